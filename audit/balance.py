@@ -218,7 +218,8 @@ def imbalance(scene: Scene, phase: PhaseRun) -> float:
 def _frame_of(scene: Scene, phase: PhaseRun) -> tuple[_Frame, FloatArray]:
     """The frame of a phase's contacts, and their places, of points where these are."""
     load = load_of(scene, phase.name)
-    acts, couple = acting_at(scene, load, phase.pose)
+    driven = {} if phase.drive is None else {name: body.pose_cage_body for name, body in phase.drive.bodies.items()}
+    acts, couple = acting_at(scene, load, phase.pose, driven)
     world = dict(zip(scene.cage.names, scene.cage.points_world(), strict=True))
     places = np.array([world.get(contact.point, contact.place_world) for contact in phase.contacts])
     return _Frame(scene, phase.pose, places, acts, couple, of_all=load.needs_newtons), places

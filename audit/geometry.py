@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from math import prod
@@ -150,8 +150,13 @@ def acting(scene: Scene, load: Load) -> list[Acting]:
     return [*pushes, Acting(beside * down / np.linalg.norm(down), center)]
 
 
-def acting_at(scene: Scene, load: Load, pose: Pose) -> tuple[list[Acting], FloatArray]:
-    """All forces of a load at a pose, those that follow the object and those of springs too, and its moments, (3,)."""
+def acting_at(
+    scene: Scene, load: Load, pose: Pose, driven: Mapping[str, Pose] | None = None
+) -> tuple[list[Acting], FloatArray]:
+    """All forces of a load at a pose, those that follow the object and those of springs too, and its moments, (3,).
+
+    Bodies that were ``driven`` are where this says, in the cage's frame, all others where they start.
+    """
     acts, couple = acting(scene, load), np.zeros(3)
     for push in load.pushes:
         if push.follows:
@@ -159,9 +164,13 @@ def acting_at(scene: Scene, load: Load, pose: Pose) -> tuple[list[Acting], Float
             acts.append(Acting(magnitude * pose.rotation @ push.direction, push.at_object_m))
     for spring in load.springs:
         start = scene.object.pose_world_object.transform(spring.at_object_m)
-        way = spring.to_world_m - pose.transform(spring.at_object_m)
+        end = scene.cage.spring_end_world(spring)
+        at_start = float(np.linalg.norm(end - start))
+        if driven and spring.of is not None and spring.of in driven:
+            end = scene.cage.pose_world_cage.transform(driven[spring.of].transform(spring.to_m))
+        way = end - pose.transform(spring.at_object_m)
         length = float(np.linalg.norm(way))
-        longer = length - float(np.linalg.norm(spring.to_world_m - start))
+        longer = length - at_start
         tension = spring.preload_n + spring.stiffness_n_per_m * longer
         acts.append(Acting(tension / length * way, spring.at_object_m))
     for moment in load.moments:

@@ -20,8 +20,11 @@ from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.collision.boxes import BoxesAndPoints, empty_placed_boxes, place_boxes_at
 from cagepose.kernels.contact.loads import Action
 from cagepose.kernels.contact.metric import Body
+from cagepose.kernels.driven.run import repeat_quasistatic, run_quasistatic, run_quasistatic_cases
+from cagepose.kernels.driven.workspace import empty_drive_workspace
 from cagepose.kernels.outcome.at_pose import critical_friction, judge_start
 from cagepose.kernels.outcome.cases import Cases, Part
+from cagepose.kernels.outcome.drives import Drives, Leg
 from cagepose.kernels.outcome.endings import empty_endings
 from cagepose.kernels.outcome.records import empty_outcome
 from cagepose.kernels.play.certificate import certify, empty_certificate_workspace
@@ -31,13 +34,7 @@ from cagepose.kernels.play.extreme import Extreme, find_linear_play
 from cagepose.kernels.play.goal import Goal
 from cagepose.kernels.play.polytope import empty_play_workspace, write_start
 from cagepose.kernels.play.search import find_play, find_play_from
-from cagepose.kernels.quasistatic.run import (
-    QuasistaticRules,
-    repeat_quasistatic,
-    run_quasistatic,
-    run_quasistatic_cases,
-)
-from cagepose.kernels.quasistatic.workspace import empty_quasistatic_workspace
+from cagepose.kernels.quasistatic.run import QuasistaticRules
 from cagepose.kernels.stability.proof import empty_proof_workspace
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
 from cagepose.kernels.stability.reach import empty_cone_rays, reach
@@ -82,11 +79,14 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     part = Part(none, vectors, vectors, np.zeros((1, 3, 3)), 1, empty_record(Body), ORIGIN)
     actions = np.zeros((1, 1, 1), dtype_of(Action))
     points = np.zeros((1, 1, 3))
+    drives = Drives(np.zeros((1, 1, 1), dtype_of(Leg)), np.zeros((1, 1), np.int64), numbers)
     cases = Cases(
         vectors,
         quaternions,
         points,
         bodies,
+        np.zeros((1, 7)),
+        drives,
         vectors,
         quaternions,
         numbers,
@@ -105,7 +105,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield balance_with_faces, (0.0, proof)
     yield search_with_faces, (0.0, proof)
 
-    rules, work = QuasistaticRules(0.0, 1), empty_quasistatic_workspace(geometry, 1)
+    rules, work = QuasistaticRules(0.0, 1), empty_drive_workspace(geometry, 1, 1, 1, 1)
     yield run_quasistatic, (part, cases, rules, work, outcome)
     yield repeat_quasistatic, (0, outcome.steps, outcome.order[0], 1, part, cases, rules, work, outcome)
     yield run_quasistatic_cases, (0, 0, part, cases, 0.0, rules, work, endings)

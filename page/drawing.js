@@ -1,7 +1,7 @@
 // Draws the stage at one time: the object, the cage, what touches and presses, what pushes, what it turns about.
 
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, LineSegments } from "three";
-import { add, carried, composed, cross, dot, inverse, norm, rotated, sub, times, turnedTo, unit } from "./geometry.js";
+import { add, carried, composed, cross, dot, inverse, norm, rotated, samePose, sub, times, turnedTo, unit } from "./geometry.js";
 import { Camera } from "./camera.js";
 import { color, Marks } from "./marks.js";
 import { Overlay } from "./overlay.js";
@@ -87,10 +87,20 @@ export class Drawing {
     const heights = (body, pose) => body.outer.map((corner) => carried(pose, corner)[2]);
     const corners = [0, stage.shots.length - 1].flatMap((time) => heights(this.object, this.shown(time).pose));
     const look = this.shown(stage.shots.length - 1).look;
-    const bodies = this.bodies.flatMap((body, index) => heights(body, stage.bodyPose(index, look)));
+    const bodies = this.everyBody().flatMap(([body, at]) => heights(body, at));
     const points = stage.data.points.map((_, index) => stage.point(index, look)[2] - (this.pointLook === "pin" ? this.pin : 0));
     const low = [...corners, ...bodies, ...points].reduce((least, height) => Math.min(least, height), 0);
     this.world.layGround(low - this.sizes.below);
+  }
+
+  // The bodies of the cage with the poses at which they are shown at the end; those that are driven, wherever they were.
+  everyBody() {
+    const { stage } = this;
+    const looks = [...new Set([...stage.cageTimes(), stage.shots.length - 1])].map((time) => this.shown(time).look);
+    return this.bodies.flatMap((body, index) => {
+      const isDriven = stage.data.elementBodies[stage.data.points.length + index] > 0;
+      return (isDriven ? looks : looks.slice(-1)).map((look) => [body, stage.bodyPose(index, look)]);
+    });
   }
 
   // The look of a time, and the pose of the object then.
@@ -111,7 +121,7 @@ export class Drawing {
     this.showHoles(look, pose);
     this.drawPoints(shot, look, pose);
     this.drawTouches(shot, look, pose);
-    this.drawLoads(shot, pose);
+    this.drawLoads(shot, look, pose);
     this.drawMotion(shot, pose);
     this.drawTrace(time);
     if (!camera.isClose()) this.marks.ball(carried(pose, stage.data.center), this.sizes.ball - 1, this.paint.trace);
@@ -154,21 +164,18 @@ export class Drawing {
     const [low, high] = [Math.min, Math.max].map((pick) => [0, 1, 2].map((axis) => needed.reduce((best, place) => pick(best, place[axis]), needed[0][axis])));
     this.cutOff = (place) => place.map((value, axis) => Math.max(low[axis] - data.reach, Math.min(high[axis] + data.reach, value)));
     if (!this.camera) return needed;
-    const tails = data.phases.flatMap((phase) => phase.loads).flatMap((load) => this.loadEnds(load, pose));
+    const tails = data.phases.flatMap((phase) => phase.loads).flatMap((load) => this.loadEnds(load, look, pose));
     const pressing = stage.shots.at(-1).touches.filter((touch) => touch.force).map((touch) => this.forceArrow(touch, pose, look)[0]);
-    const bodies = this.bodies.flatMap((body, index) => {
-      const at = stage.bodyPose(index, look);
-      return body.outer.map((corner) => this.cutOff(carried(at, corner)));
-    });
+    const bodies = this.everyBody().flatMap(([body, at]) => body.outer.map((corner) => this.cutOff(carried(at, corner))));
     return [...needed, ...tails, ...pressing, ...bodies];
   }
 
   // Where a load's arrow starts and ends: that of a force ends where it acts, that of a moment starts at the centre of
   // gravity; a spring leads to where it is held, or part of the way.
-  loadEnds(load, pose) {
+  loadEnds(load, { cage }, pose) {
     const at = carried(pose, load.at);
     if (load.kind === "spring") {
-      const way = sub(load.to, at);
+      const way = sub(carried(cage[load.body], load.to), at);
       return [at, add(at, times(Math.min(1, this.sizes.longest_spring / (norm(way) || 1)), way))];
     }
     const arrow = times(this.sizes.load * this.camera.pixel(at), load.follows ? rotated(pose.q, load.direction) : load.direction);
@@ -240,9 +247,9 @@ export class Drawing {
     }
   }
 
-  drawLoads(shot, pose) {
+  drawLoads(shot, look, pose) {
     for (const load of this.stage.data.phases[shot.phase].loads) {
-      const [start, end] = this.loadEnds(load, pose);
+      const [start, end] = this.loadEnds(load, look, pose);
       if (load.kind === "spring") this.drawCoil(start, end);
       else this.marks.arrow(start, end, 1.3 * this.sizes.rod, this.paint.load);
       // A moment's arrow has two heads.
@@ -282,7 +289,7 @@ export class Drawing {
     this.marks.arrow(add(middle, times(-half, direction)), add(middle, times(half, direction)), 0.6 * this.sizes.rod, this.paint.axis);
   }
 
-  // The way of the centre of gravity, and where the object started.
+  // The way of the centre of gravity, and where the object and bodies of the cage that have been driven started.
   drawTrace(time) {
     const { stage, camera, trace, ghost } = this;
     const center = (moment) => carried(this.shown(moment).pose, stage.data.center);
@@ -290,8 +297,14 @@ export class Drawing {
     if (told.some((value, i) => value !== this.way?.told[i])) this.way = { told, places: stage.shots.map((_, index) => center(index)) };
     fill(trace, [...this.way.places.slice(0, Math.floor(time) + 1), center(time)]);
     trace.position.set(...sub([0, 0, 0], camera.target));
-    const start = this.shown(0).pose;
-    fill(ghost, this.object.outline(carried(inverse(start), camera.eye())));
+    const { pose: start, look } = this.shown(0);
+    const back = inverse(start), outlined = (body, pose) => body.outline(carried(inverse(pose), camera.eye())).map((place) => carried(composed(back, pose), place));
+    const { cage } = this.shown(time).look;
+    const driven = this.bodies.filter((_, index) => {
+      const body = stage.data.elementBodies[stage.data.points.length + index];
+      return body > 0 && !samePose(cage[body], look.cage[body]);
+    });
+    fill(ghost, [...this.object.outline(carried(back, camera.eye())), ...driven.flatMap((body) => outlined(body, stage.bodyPose(this.bodies.indexOf(body), look)))]);
     ghost.position.set(...sub(start.p, camera.target));
     ghost.quaternion.set(start.q[1], start.q[2], start.q[3], start.q[0]);
     trace.visible = ghost.visible = !camera.isClose();

@@ -19,6 +19,7 @@ export const conjugate = (q) => [q[0], -q[1], -q[2], -q[3]];
 export const rotated = (q, v) => product(product(q, [0, ...v]), conjugate(q)).slice(1);
 export const carried = (pose, v) => add(rotated(pose.q, v), pose.p);
 export const inverse = (pose) => ({ p: times(-1, rotated(conjugate(pose.q), pose.p)), q: conjugate(pose.q) });
+export const samePose = (a, b) => a === b || [0, 1, 2].every((i) => a.p[i] === b.p[i]) && a.q.every((value, i) => value === b.q[i]);
 export const composed = (outer, inner) => ({ p: carried(outer, inner.p), q: product(outer.q, inner.q) });
 
 // Axis times angle of the turn from one orientation to another, at most half a turn.

@@ -2,6 +2,7 @@
 
 import { add, norm, times } from "./geometry.js";
 import { Drawing } from "./drawing.js";
+import { ForceCurve, NOISE } from "./force.js";
 import { Card } from "./card.js";
 import { Panel } from "./panel.js";
 import { Plot } from "./plot.js";
@@ -22,6 +23,7 @@ let shownAt = -Infinity;
 let told = null; // on what that depends which stands around the picture now
 
 const plot = new Plot($("plot"), (time) => { pause(); seek(time); });
+const force = new ForceCurve($("force"), (time) => { pause(); seek(time); });
 const card = new Card((touch) => {
   exaggerate(1); // what is exaggerated touches to first order only
   drawing.zoomTo(touch);
@@ -148,7 +150,7 @@ function fill() {
     const motion = element("td", row.verdict ? [row.motion, row.verdict].filter(Boolean).join(", ") : row.motion);
     if (row.verdict) motion.className = row.verdictKind;
     line.append(element("td", String(index + 1)), element("td", data.phases[row.phase].name), element("td", row.rule), motion,
-      element("td", row.amount), namesCell(row.reached), namesCell(row.left));
+      element("td", [row.amount, row.drive].filter(Boolean).join("\n")), namesCell(row.reached), namesCell(row.left));
     line.title = row.contacts.length ? `touching: ${row.contacts.join(", ")}` : "nothing touches";
     line.addEventListener("click", () => { pause(); seek(row.last); });
     $("events").tBodies[0].append(line);
@@ -196,6 +198,7 @@ function tell() {
   const after = data.shots[Math.ceil(time)], before = data.shots[Math.floor(time)];
   const mixed = (key, noise) => after[key].map((value, i) => digits(before[key][i] + (time - Math.floor(time)) * (value - before[key][i]), noise)).join(", ");
   plot.draw(time);
+  tellDrive(time);
   $("time").value = time;
   $("play").textContent = player.playing ? "\u275A\u275A" : "\u25B6";
   $("times").textContent = `\u00D7${k}`;
@@ -217,6 +220,16 @@ function tell() {
   $("forces").tBodies[0].replaceChildren(...forceRows(shot));
   player.drawnTime = time;
   player.drawnExaggeration = k;
+}
+
+// The force of the drive of the phase on screen; a phase without one has none.
+function tellDrive(time) {
+  const { drive } = data.phases[phase()], now = stage.drive(time);
+  $("drive").hidden = !drive;
+  if (!drive) return;
+  const along = now?.along == null ? "not known" : `${+digits(now.along, NOISE * data.greatestForce).toPrecision(4)} ${drive.unit}`;
+  $("driven").textContent = now ? `${(100 * now.share).toFixed(1)} %: ${along}` : "not yet driven";
+  force.draw(data, phase(), now && now.along !== null ? now : null);
 }
 
 function whyNoForces(shot) {
@@ -283,7 +296,7 @@ window.cagepose = {
       shownPose: stage.pose(stage.truePose(player.time), look),
       points: data.points.map((_, index) => stage.point(index, look)),
       touches: stage.shot(player.time).touches.map((touch) => stage.place(touch, look)),
-      bodies: data.bodies.map((_, index) => stage.bodyPose(index, look).p),
+      bodies: data.bodies.map((_, index) => stage.bodyPose(index, look).p), drive: stage.drive(player.time),
       camera: camera && { target: camera.target, half: camera.half, back: camera.axes()[2], perspective: camera.perspective },
       picked: card.touch && data.names[card.touch.point], hasShadows: drawing?.world.hasShadows, built: drawing?.built };
   },

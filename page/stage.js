@@ -1,14 +1,17 @@
 // What is shown of the data at a time, each phase exaggerated by a number of its own. The same formulas as in stage.py.
 
-import { add, between, carried, conjugate, dot, fromTurnVector, norm, product, rotated, sub, times, turnVector } from "./geometry.js";
+import { add, between, carried, composed, conjugate, dot, fromTurnVector, inverse, norm, product, rotated, sub, times, turnVector } from "./geometry.js";
 
 export class Stage {
   constructor(data) {
     this.data = data;
+    const cages = data.cages.map((cage) => cage.map(({ position, quaternion }) => ({ p: position, q: quaternion })));
     const touches = data.touches.map(({ points, boxes, normals, forces, places, gaps, friction }) =>
       points.map((point, i) => ({ point, box: boxes[i], normal: normals[i], force: forces && forces[i], gap: gaps && gaps[i],
         friction: friction && friction[i], place: places ? places[i] : data.points[point] })));
-    this.shots = data.shots.map((s) => ({ row: s.row, phase: s.phase, pose: { p: s.position, q: s.quaternion }, touches: touches[s.touches] }));
+    const moves = cages.length > 1;
+    this.shots = data.shots.map((s) => ({ row: s.row, phase: s.phase, pose: { p: s.position, q: s.quaternion }, cage: cages[s.cage],
+      touches: moves ? touches[s.touches].map((touch) => ({ ...touch, cage: cages[s.cage] })) : touches[s.touches] }));
   }
 
   // The origin of drawing coordinates, in the scene's own.
@@ -24,6 +27,26 @@ export class Stage {
     return between(this.shots[before].pose, this.shots[after].pose, time - before);
   }
 
+  // How what stands still and each body of the cage is displaced at a time from its start.
+  cage(time) {
+    const before = this.shots[Math.floor(time)].cage, after = this.shots[Math.ceil(time)].cage;
+    return before === after ? before : before.map((pose, body) => between(pose, after[body], time - Math.floor(time)));
+  }
+
+  // How much of its phase's drive is done at a time, and the force along it; null: it has not begun.
+  drive(time) {
+    const before = this.data.shots[Math.floor(time)], after = this.data.shots[Math.ceil(time)];
+    if (after.along === null) return null;
+    const mixed = (key) => (before.phase === after.phase && before[key] !== null ? before[key] + (time - Math.floor(time)) * (after[key] - before[key]) : after[key]);
+    return { share: mixed("share"), along: mixed("along") };
+  }
+
+  // The first shot and the ends of events at which bodies of the cage are elsewhere than before.
+  cageTimes() {
+    const ends = [0, ...this.data.rows.map((row) => row.last)];
+    return ends.filter((time, index) => index === 0 || this.shots[time].cage !== this.shots[ends[index - 1]].cage);
+  }
+
   // Between two shots, what goes on is what the later one tells.
   shot(time) {
     return this.shots[Math.ceil(time)];
@@ -33,8 +56,12 @@ export class Stage {
     return this.data.phases.findIndex((phase) => time <= phase.last);
   }
 
-  // How a moment is shown: exaggerated by `factor`, from the pose of the shot `reference`.
+  // How a moment is shown: exaggerated by `factor`, from the pose of the shot `reference`, with bodies where they are then.
   look(time, exaggerations) {
+    return { ...this.exaggerated(time, exaggerations), cage: this.cage(time) };
+  }
+
+  exaggerated(time, exaggerations) {
     const { phases, ease } = this.data;
     const index = this.phaseAt(time);
     const phase = phases[index], ended = phases[index - 1];
@@ -65,20 +92,30 @@ export class Stage {
   shift(element, { reference, factor }) {
     if (factor === 1) return [0, 0, 0];
     const gap = this.data.gaps[reference][element];
-    const most = norm(gap) === 0 ? 0 : this.data.mostAdded / norm(gap);
+    const room = this.data.elementBodies[element] > 0 ? Math.max(this.data.mostWay - norm(gap), 0) : this.data.mostAdded;
+    const most = norm(gap) === 0 ? 0 : room / norm(gap);
     return times(Math.min(factor - 1, most), gap);
   }
 
-  point(index, look) {
-    return add(this.data.points[index], this.shift(index, look));
+  // How an element of the cage is displaced from its start.
+  displaced(element, { cage }) {
+    return cage[this.data.elementBodies[element]];
   }
 
-  // Where a touch is shown; on the wall of a hole of the cage, as far out as that is.
+  point(index, look) {
+    return add(carried(this.displaced(index, look), this.data.points[index]), this.shift(index, look));
+  }
+
+  // Where a touch is shown: along with the body that it is on; on the wall of a hole of the cage, as far out as that is.
   place(touch, look) {
-    const place = add(touch.place, this.shift(touch.point, look));
-    const hole = this.data.cageHoles[touch.point - this.data.points.length - this.data.bodies.length];
-    if (!hole) return place;
-    const [x, y] = rotated(conjugate(hole.quaternion), sub(touch.place, hole.position));
+    const displaced = this.displaced(touch.point, look);
+    const at = touch.cage ? carried(composed(displaced, inverse(this.displaced(touch.point, touch))), touch.place) : touch.place;
+    const place = add(at, this.shift(touch.point, look));
+    const start = this.data.cageHoles[touch.point - this.data.points.length - this.data.bodies.length];
+    if (!start) return place;
+    const { p: position, q: quaternion } = composed(displaced, { p: start.position, q: start.quaternion });
+    const hole = { position, quaternion, play: start.play };
+    const [x, y] = rotated(conjugate(hole.quaternion), sub(at, hole.position));
     const out = (look.factor - 1) * hole.play / (Math.hypot(x, y) || 1);
     return add(place, rotated(hole.quaternion, [out * x, out * y, 0]));
   }
@@ -87,7 +124,8 @@ export class Stage {
   bodyPose(index, look) {
     const { bodies, cageHoles, points } = this.data;
     const { position, quaternion } = bodies[index] ?? cageHoles[index - bodies.length];
-    return { p: add(position, this.shift(points.length + index, look)), q: quaternion };
+    const at = composed(this.displaced(points.length + index, look), { p: position, q: quaternion });
+    return { p: add(at.p, this.shift(points.length + index, look)), q: at.q };
   }
 
   // The line a motion turns about, carried by the object as it is shown when the motion begins.

@@ -30,13 +30,14 @@ if TYPE_CHECKING:
     from cagepose.files.scene_file import load_scene as load_scene
     from cagepose.model.box import Box as Box
     from cagepose.model.cage import Cage as Cage
+    from cagepose.model.cage_body import CageBody as CageBody
+    from cagepose.model.drive import Drive as Drive
     from cagepose.model.facets import Facets as Facets
     from cagepose.model.hole import Chamfer as Chamfer
     from cagepose.model.hole import Hole as Hole
     from cagepose.model.load import Force as Force
     from cagepose.model.load import Load as Load
     from cagepose.model.load import Moment as Moment
-    from cagepose.model.load import Spring as Spring
     from cagepose.model.parts import Object as Object
     from cagepose.model.pose import Pose as Pose
     from cagepose.model.scene import Adjustable as Adjustable
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from cagepose.model.shapes import Disc as Disc
     from cagepose.model.shapes import Shape as Shape
     from cagepose.model.shapes import Sphere as Sphere
+    from cagepose.model.spring import Spring as Spring
     from cagepose.model.tolerances import Tolerances as Tolerances
     from cagepose.runs.critical import with_critical_friction as with_critical_friction
     from cagepose.runs.many import Runs as Runs
@@ -100,13 +102,16 @@ _HOMES = {
     ),
     "cagepose.model.box": ("Box",),
     "cagepose.model.cage": ("Cage",),
+    "cagepose.model.cage_body": ("CageBody",),
+    "cagepose.model.drive": ("Drive",),
     "cagepose.model.hole": ("Chamfer", "Hole"),
-    "cagepose.model.load": ("Force", "Load", "Moment", "Spring"),
+    "cagepose.model.load": ("Force", "Load", "Moment"),
     "cagepose.model.parts": ("Object",),
     "cagepose.model.pose": ("Pose",),
     "cagepose.model.scene": ("Adjustable", "Scene"),
     "cagepose.model.facets": ("Facets",),
     "cagepose.model.shapes": ("Capsule", "Cone", "Convex", "Cylinder", "Disc", "Shape", "Sphere"),
+    "cagepose.model.spring": ("Spring",),
     "cagepose.model.tolerances": ("Tolerances",),
     "cagepose.runs.critical": ("with_critical_friction",),
     "cagepose.runs.many": ("Runs", "run_many"),
@@ -136,6 +141,7 @@ __all__ = [
     "Adjustable",
     "Box",
     "Cage",
+    "CageBody",
     "CageposeError",
     "Capsule",
     "Certificate",
@@ -153,6 +159,7 @@ __all__ = [
     "Design",
     "DesignResults",
     "Disc",
+    "Drive",
     "Facets",
     "Event",
     "Force",

@@ -1,5 +1,7 @@
 """Several bodies of a cage in one memory: what touches which, wherever each of them is."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -35,7 +37,9 @@ PEGS = [np.array([1.0, 0.3, 0.1]), np.array([1.0, -0.3, 0.1])]
 
 def together(bodies, poses):
     """Return what touches the part at the origin, and the memory: bodies of a cage, each at its pose."""
-    cage = joined([boundary_of(parts, TOUCH_M) for parts in bodies])
+    ends = np.cumsum([0, *map(len, bodies)])
+    numbers = [np.arange(first, last) for first, last in pairwise(ends)]
+    cage = joined([boundary_of(parts, TOUCH_M) for parts in bodies], numbers)
     memory = empty_placing(cage.own, len(bodies))
     for which, pose in enumerate(poses):
         place_boundary(body_of(cage, memory, which), *pose.as_tuples())

@@ -97,8 +97,8 @@ BROKEN = [
     ("no friction in friction", PIN + ", friction: {}", FLOOR,
      "4:53: object.shapes[0].friction: has neither of coefficient and angle_deg; give one of them"),
     ("friction of all in that of one", PIN + ", friction: {of: {a: 1}}", FLOOR,
-     "4:54: object.shapes[0].friction.of: is no known key; it belongs to friction; known keys: coefficient,"
-     " angle_deg"),
+     "4:54: object.shapes[0].friction.of: is no known key; it belongs to loads[i].springs[i] or friction; known keys:"
+     " coefficient, angle_deg"),
     ("friction of a shared name", PIN + ", name: a, friction: 0.1", FLOOR + ", name: a",
      "4:62: object.shapes[0].friction: is that of 'a', a name in the cage and in the object; rename one of the"
      " two"),

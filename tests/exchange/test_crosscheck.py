@@ -4,11 +4,28 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from cagepose import Box, Cage, CageposeError, Force, Load, Moment, Object, Pose, Scene, Spring, load_scene, run
+from cagepose import (
+    Box,
+    Cage,
+    CageBody,
+    CageposeError,
+    Drive,
+    Force,
+    Load,
+    Moment,
+    Object,
+    Pose,
+    Scene,
+    SceneError,
+    Spring,
+    load_scene,
+    run,
+)
 from cagepose.cli.app import main
 from cagepose.exchange import crosscheck as module
 from cagepose.exchange.crosscheck import crosscheck
@@ -59,6 +76,14 @@ def test_all_kinds_of_loads_act_in_mujoco():
     assert found.phases[0].allowed_m < 1e-5 * scene.size_m
     assert np.degrees(found.run.pose.euler_zyx[0]) == pytest.approx(4.756, abs=1e-3)
     assert found.run.pose.position_m[1] == pytest.approx(1.9805e-3, abs=1e-6)
+
+
+def test_a_scene_that_drives_a_body_is_refused():
+    held, jaw = Object([Box((2, 2, 2))]), CageBody("jaw", [(5, 0, 0)])
+    driven = Scene(held, Cage([(0, 0, -1)], bodies=[jaw]), [Load("close", drive={"jaw": Drive((-1, 0, 0))})])
+    still = run(Scene(held, Cage([(0, 0, -1)]), [Load("weight", gravity=(0, 0, -1))]))
+    with pytest.raises(SceneError, match=r"^loads\[0\].drive: 'close' drives a body, and MuJoCo is asked where all"):
+        crosscheck(replace(still, scene=driven))
 
 
 def test_a_fall_without_end_agrees_with_a_fall():

@@ -7,12 +7,27 @@ import os
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from cagepose import Hole, Scene, SceneFileError, load_scene, run
+from cagepose import (
+    Box,
+    Cage,
+    CageBody,
+    Drive,
+    Hole,
+    Load,
+    Object,
+    Pose,
+    Scene,
+    SceneFileError,
+    Spring,
+    load_scene,
+    run,
+)
 from cagepose.cli.app import main
 from cagepose.exchange import compile_model, imported, model_text
 from cagepose.exchange.compile_model import compiled_here
@@ -30,7 +45,9 @@ FILES = {path.stem: path for path in SCENES}
 
 
 def is_primitive(scene: Scene) -> bool:
-    """Whether every part is exactly what the formats have."""
+    """Whether every part is exactly what the formats have, and none is driven: in them all of the cage stands still."""
+    if scene.cage.bodies:
+        return False
     parts = (*scene.object.parts, *scene.cage.shapes, *scene.object.holes, *scene.cage.holes)
     return not any(isinstance(part, Cone | Hole) or (isinstance(part, Convex) and part.radius_m) for part in parts)
 
@@ -384,3 +401,29 @@ def test_a_hull_of_many_corners_is_facets(tmp_path):
     found = imported.imported(str(tmp_path / "post.xml"))
     assert [shape.kind for shape in found.scene.cage.shapes] == ["box", "facets"]
     assert run(found.scene).pose.position_m[2] == pytest.approx(0.12, abs=1e-7)
+
+
+@pytest.mark.parametrize("to", ["mjcf", "urdf"])
+@pytest.mark.usefixtures("here")
+def test_bodies_of_the_cage_stand_still_where_they_start_and_what_is_driven_is_said(to, tmp_path):
+    jaw = CageBody("jaw", [(0.05, 0.0, 0.0)], shapes=[Box((0.01, 0.02, 0.01))], pose=Pose((0.03, 0.0, 0.0)))
+    loads = [
+        Load("weight", gravity=(0, 0, -9.81)),
+        Load("grip", springs=[Spring((0, 0, 0), (0.02, 0, 0), 5.0, of="jaw")], drive={"jaw": Drive((-0.01, 0, 0))}),
+        Load("close", drive={"jaw": Drive((-0.01, 0, 0))}),
+    ]
+    held = Object([Box((0.02, 0.02, 0.02))], mass_kg=1.0)
+    scene = Scene(held, Cage([(0.0, 0.0, -0.01)], bodies=[jaw]), loads)
+    alone = Cage(scene.cage.points_cage, scene.cage.names, shapes=scene.cage.shapes)
+    export = exported(replace(run(Scene(held, alone, loads[:1])), scene=scene), to, "scene.xml")
+    for file, content in export.files.items():
+        (tmp_path / file).write_bytes(content)
+    notes = " ".join(export.notes)
+    assert "bodies of the cage stand still in the file where they start, as one with it: jaw" in notes
+    assert "what is driven in the scene is not in the file: grip, close" in notes
+    found = imported.imported(str(tmp_path / "scene.xml")).scene
+    assert found.cage.element_names == scene.cage.element_names
+    assert found.cage.points_cage == pytest.approx(scene.cage.points_cage)
+    assert [load.name for load in found.loads] == ["weight", "grip"]
+    (spring,) = found.loads[1].springs
+    assert (spring.of, spring.to_m) == (None, pytest.approx([0.05, 0.0, 0.0]))

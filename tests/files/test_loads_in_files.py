@@ -43,7 +43,7 @@ def test_moments_and_stiffnesses_have_the_files_unit_of_length(unit: str) -> Non
     one, other = load.springs
     assert (one.stiffness_n_per_m, one.preload_n) == (pytest.approx(0.5 / length), -3.0)
     assert (other.stiffness_n_per_m, other.preload_n) == (pytest.approx(2 / length), 0.0)
-    assert other.to_world_m.tolist() == pytest.approx([0, 9 * length, 60 * length])
+    assert other.to_m.tolist() == pytest.approx([0, 9 * length, 60 * length])
 
 
 def test_one_value_of_a_spring_is_set() -> None:
@@ -87,7 +87,7 @@ def test_a_saved_run_has_its_loads_and_an_older_one_has_none(tmp_path: Path) -> 
     assert [force.follows for force in other.forces] == [False, True]
     assert other.moments[0].magnitude_nm == mine.moments[0].magnitude_nm
     assert other.springs[0].preload_n == mine.springs[0].preload_n
-    assert np.array_equal(other.springs[1].to_world_m, mine.springs[1].to_world_m)
+    assert np.array_equal(other.springs[1].to_m, mine.springs[1].to_m)
     assert np.array_equal(run(again.scene).pose.position_m, result.pose.position_m)
 
     content = json.loads(path.read_text())

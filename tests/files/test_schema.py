@@ -41,8 +41,9 @@ def test_every_example_is_valid(sample_text: str) -> None:
     for path, examples in _examples(schema, schema, ()):
         for example in examples:
             data: Any = parse_yaml(sample_text, "x").data
-            if path[1:2] == ("shapes",) and len(path) > 3 and path[3] not in KINDS:
-                _put(data, (*path[:3], "sphere"), {"radius": 1})
+            shape = path[: path.index("shapes") + 2] if "shapes" in path else path
+            if len(path) > len(shape) and path[len(shape)] not in KINDS:
+                _put(data, (*shape, "sphere"), {"radius": 1})
             _put(data, path, example)
             # Neighbours of an example may be missing; the example itself must be right.
             assert {details["type"] for details in _errors(data)} <= {"missing"}, path

@@ -24,6 +24,7 @@ from cagepose.kernels.contact.loads import (
     write_load,
 )
 from cagepose.kernels.contact.metric import Body, frame_at, moved_along_twist
+from cagepose.kernels.contact.tolerances import ROUNDING_OF_ENDS
 
 KINDS = {
     "dead force": DEAD_FORCE,
@@ -150,7 +151,8 @@ def test_a_spring_whose_tension_is_its_length_times_stiffness_is_linear_also_at_
     here = tuple(action.anchor)
     upright = (1.0, 0.0, 0.0, 0.0)
     out = np.zeros(7)
-    assert write_load(acts, here, upright, frame_at(body(), upright), out) == 0.0
+    terms = write_load(acts, here, upright, frame_at(body(), upright), out)
+    assert terms == pytest.approx(ROUNDING_OF_ENDS * 2.0 * action.stiffness * np.linalg.norm(here))
     assert not out.any()
     hessian = np.zeros((6, 6))
     add_load_curvature(acts, here, upright, frame_at(body(), upright), hessian)

@@ -12,11 +12,13 @@ import cagepose
 from cagepose import (
     Box,
     Cage,
+    CageBody,
     Capsule,
     Cone,
     Convex,
     Cylinder,
     Disc,
+    Drive,
     Force,
     Hole,
     Load,
@@ -53,10 +55,16 @@ CALLS: dict[str, Call] = {
     "Hole": (Hole, {"radius_m": 1.0, "depth_m": 1.0, "chamfer": None, "in_": ()}),
     "Pose": (Pose, {"position_m": (0, 0, 0), "euler_zyx": (0, 0, 0)}),
     "Object": (Object, {"boxes": [BOX], "shapes": (), "holes": (), "pose": None, "mass_kg": None}),
-    "Cage": (Cage, {"points": [(0, 0, 0)], "names": None, "pose": None, "shapes": (), "holes": ()}),
+    "Cage": (Cage, {"points": [(0, 0, 0)], "names": None, "pose": None, "shapes": (), "holes": (), "bodies": ()}),
+    "CageBody": (
+        CageBody,
+        {"name": "x", "points": [(0, 0, 0)], "names": None, "pose": None, "shapes": (), "holes": ()},
+    ),
+    "Drive": (Drive, {"travel": (0, 0, 1), "about": (0, 0, 1), "through": (0, 0, 0), "angle": 1.0}),
     "Force": (Force, {"direction": (1, 0, 0), "at_m": (0, 0, 0), "magnitude_n": None}),
     "Moment": (Moment, {"direction": (1, 0, 0), "magnitude_nm": 1.0}),
-    "Spring": (Spring, {"at_m": (1, 0, 0), "to_m": (0, 0, 0), "stiffness_n_per_m": 1.0, "preload_n": 0.0}),
+    "Spring": (Spring, {"at_m": (1, 0, 0), "to_m": (0, 0, 0), "stiffness_n_per_m": 1.0, "preload_n": 0.0, "of": None}),
+    "Load, driven": (partial(Load, "x"), {"drive": {"mate": Drive((1, 0, 0))}, "stop_at": 1.0}),
     "Load": (Load, {"name": "x", "gravity": (0, 0, -1), "force": None, "forces": (), "moments": (), "springs": ()}),
     "Scene": (
         Scene,
@@ -85,15 +93,17 @@ CALLS: dict[str, Call] = {
     "save_run": (partial(cagepose.save_run, path=NOWHERE), {"run": RUN, "length_unit": "mm"}),
     "save_scene": (partial(cagepose.save_scene, path=NOWHERE), {"scene": SCENE, "length_unit": "mm"}),
 }
-TAKEN = {(call, "name"): ("file.yaml",) for call in ("Box", "Sphere", "Load", "Scene")} | {
+TAKEN = {(call, "name"): ("file.yaml",) for call in ("Box", "Sphere", "Load", "Scene", "CageBody")} | {
     ("Hole", "in_"): ("file.yaml", ANYTHING[5]),  # a name; the keys of a mapping are names
     ("Cage", "names"): (ANYTHING[5],),
+    ("CageBody", "names"): (ANYTHING[5],),
+    ("Spring", "of"): ("file.yaml",),
     ("run_many", "scenes"): (SCENE,),
     **{(call, "scene"): (SCENE,) for call in ("run", "play", "compare", "save_scene")},
 }
 KEYS = {"grazing_band_rad": "grazing_band_deg"}
 """Keys of files, where they are called otherwise."""
-THREE = ("size_m", "position_m", "euler_zyx", "direction", "at_m", "to_m", "gravity")
+THREE = ("size_m", "position_m", "euler_zyx", "direction", "at_m", "to_m", "gravity", "travel", "about", "through")
 POSITIVE = ("radius_m", "length_m", "depth_m", "radius_bottom_m", "radius_top_m", "mass_kg", "magnitude_n")
 
 
@@ -101,7 +111,15 @@ def takes(call: str, argument: str, value: object) -> bool:
     if isinstance(value, np.ndarray):
         return argument in THREE and call != "Box"  # an edge length of 0
     if value == 5 and type(value) is int:
-        numbers = ("magnitude_nm", "stiffness_n_per_m", "preload_n", "friction_coefficient", *POSITIVE)
+        numbers = (
+            "magnitude_nm",
+            "stiffness_n_per_m",
+            "preload_n",
+            "friction_coefficient",
+            "angle",
+            "stop_at",
+            *POSITIVE,
+        )
         return argument in numbers or (call, argument) == ("run_many", "threads")
     return any(value is taken for taken in TAKEN.get((call, argument), ()))
 

@@ -47,7 +47,7 @@ def potential(scene: Scene, load: Load, pose: Pose) -> float:
     total = np.linalg.norm(weighed.gravity) + np.linalg.norm(weighed.forces)
     for spring in load.springs:
         ends = [place.transform(spring.at_object_m) for place in (scene.object.pose_world_object, pose)]
-        start, length = (float(np.linalg.norm(spring.to_world_m - end)) for end in ends)
+        start, length = (float(np.linalg.norm(spring.to_m - end)) for end in ends)
         value += spring.preload_n * (length - start) + 0.5 * spring.stiffness_n_per_m * (length - start) ** 2
         total += abs(spring.preload_n) + spring.stiffness_n_per_m * scene.size_m
     return float(value / (total * scene.size_m))

@@ -87,7 +87,7 @@ def test_a_spring_without_stiffness_pulls_along_its_line_with_its_preload() -> N
     points = [*FLOOR, (0.02, 0.0, 0.02), (-0.0205, 0.0, 0.02)]
     spring = Spring((0, 0, 0), (0.3, 0.4, 0.02), 0.0, 5.0)
     result = ended(cube(pose=Pose((0, 0, 0.02))), [*points, (0.0, 0.021, 0.02)], Load("pull", springs=[spring]))
-    way = spring.to_world_m - result.pose.position_m
+    way = spring.to_m - result.pose.position_m
     pull = 5.0 * way / np.linalg.norm(way)
     assert result.verdict == "rests"
     carried = sum(-(contact.force_normal_n or 0.0) * contact.normal_world for contact in result.contacts)
@@ -248,9 +248,7 @@ def test_the_world_has_no_place_of_its_own(turned: bool) -> None:
                 for moment in load.moments
             ],
             springs=[
-                Spring(
-                    spring.at_object_m, frame.transform(spring.to_world_m), spring.stiffness_n_per_m, spring.preload_n
-                )
+                Spring(spring.at_object_m, frame.transform(spring.to_m), spring.stiffness_n_per_m, spring.preload_n)
                 for spring in load.springs
             ],
         )

@@ -46,7 +46,7 @@ def test_a_run_that_escapes_has_events_and_no_contacts() -> None:
     escaped = cagepose.run(sample.changed("loads", [{"name": "up", "gravity": [0, 0, 1]}]))
     assert escaped.to_frame()["verdict"][-1] == "escapes"
     assert escaped.to_frame("contacts") == {name: [] for name in cagepose.run(sample).to_frame("contacts")}
-    with pytest.raises(ValueError, match="rows is 'all'; give 'events' or 'contacts'"):
+    with pytest.raises(ValueError, match="rows is 'all'; give 'events', 'contacts' or 'drive'"):
         escaped.to_frame("all")  # type: ignore[arg-type]
 
 

@@ -2,8 +2,11 @@ from __future__ import annotations
 
 import pytest
 
+from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.native.library import kernel_library
 from cagepose.kernels.stability import strong
+
+dtype_of(strong.ModeTree)  # its layout is that of the limit that is, whichever test comes first
 
 
 @pytest.fixture(autouse=True)

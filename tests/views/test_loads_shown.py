@@ -9,6 +9,7 @@ import pytest
 
 from cagepose import Load, Pose, Run, run
 from cagepose.files.scene_file import parse_scene, read_scene_text
+from cagepose.runs.driven_cage import cage_at_start
 from cagepose.studies.acts import acts_of, coil
 from cagepose.views.event_figure import event_figure
 from cagepose.views.style import figure_bytes
@@ -44,11 +45,11 @@ def fastened() -> Run:
 def test_all_that_acts_is_named_and_points_where_it_does(fastened: Run) -> None:
     acts = acts_of(fastened.scene, fastened.scene.loads[0])
     assert [act.name for act in acts] == ["weight", "force 1", "moment 1", "spring 1", "spring 2"]
-    turned = Pose((0, 0, 0.008), euler_zyx=(0.5, 0.0, 0.0))
-    assert acts[1].direction_at(turned) == pytest.approx([np.cos(0.5), np.sin(0.5), 0.0])
-    assert acts[2].direction_at(turned).tolist() == [0.0, 0.0, 1.0]
+    turned, cage = Pose((0, 0, 0.008), euler_zyx=(0.5, 0.0, 0.0)), cage_at_start(fastened.scene.cage)
+    assert acts[1].direction_at(turned, cage) == pytest.approx([np.cos(0.5), np.sin(0.5), 0.0])
+    assert acts[2].direction_at(turned, cage).tolist() == [0.0, 0.0, 1.0]
     here = turned.transform(acts[3].at_object_m)
-    assert acts[3].direction_at(turned) == pytest.approx(
+    assert acts[3].direction_at(turned, cage) == pytest.approx(
         (np.array([0.02, 0.0, -0.04]) - here) / np.linalg.norm(np.array([0.02, 0.0, -0.04]) - here)
     )
 
@@ -70,11 +71,11 @@ def test_pictures_have_all_that_acts_inside(fastened: Run) -> None:
     last = shown.shots[-1]
     drawn = np.asarray(maker.picture(last), dtype=float)
     for act in shown.loads[0]:
-        for end in maker._ends(act, last.pose_world_object):
+        for end in maker._ends(act, last.pose_world_object, maker.now):
             place = maker.seen_at(end)
             assert ((place > 0.0) & (place < SIZE)).all(), act.name
     # A spring's end is below all else: nothing but the spring is dark there.
-    x, y = maker.seen_at(maker._ends(shown.loads[0][3], last.pose_world_object)[1]).astype(int)
+    x, y = maker.seen_at(maker._ends(shown.loads[0][3], last.pose_world_object, maker.now)[1]).astype(int)
     assert drawn[y - 6 : y + 1, x - 3 : x + 4].min() < 100.0
     assert len(figure_bytes(event_figure(fastened), ".png")) > 10_000
 

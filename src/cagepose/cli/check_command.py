@@ -36,6 +36,7 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
         (len(cage.names), "cage point", "cage points"),
         (len(cage.shapes), "cage shape", "cage shapes"),
         (len(cage.holes), "cage hole", "cage holes"),
+        (len(cage.bodies), "cage body", "cage bodies"),
         (len(found.loads), "load", "loads"),
     )
     sys.stdout.write(

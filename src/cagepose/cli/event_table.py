@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from rich.console import RenderableType
 from rich.table import Table
@@ -11,9 +11,12 @@ from rich.text import Text
 from cagepose.cli.console import fits
 from cagepose.cli.styles import plain_table, verdict_style
 from cagepose.files.words import LengthWords, line_of, names_of
+from cagepose.model.load import Load
 from cagepose.runs.changes import Change, changes_of
-from cagepose.runs.run import Run
+from cagepose.runs.run import AT_REST, Run
 
+DRIVEN = "driven"
+"""The rule of an event in which bodies of the cage are driven."""
 MOST_NAMES = 12
 """A row names at most so many points and shapes; ``--verbose`` prints all."""
 
@@ -26,8 +29,9 @@ def event_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -
 
 def _table(run: Run, words: LengthWords, *, is_verbose: bool) -> Table:
     rows = list(changes_of(run))
-    has_left = any(row.left for row in rows)
-    table = plain_table("#", "phase", "rule", "motion", "along / about", "amount", "reaches")
+    has_left, loads = any(row.left for row in rows), _driven(run)
+    to = ["driven to"] if loads else []
+    table = plain_table("#", "phase", "rule", *to, "motion", "along / about", "amount", "reaches")
     if has_left:
         table.add_column("leaves", overflow="fold")
     if is_verbose:
@@ -42,13 +46,14 @@ def _table(run: Run, words: LengthWords, *, is_verbose: bool) -> Table:
         cells = [Text(line), Text(amount), *(Text(listed(of_event, is_verbose=is_verbose)) for of_event in names)]
         if is_verbose:
             cells.append(Text(names_of(row.event.contacts)))
-        table.add_row(Text(str(row.number)), Text(row.phase.name), Text(row.event.rule), _what(row), *cells)
+        depth = [Text(_depth(row, loads, words))] if loads else []
+        table.add_row(Text(str(row.number)), Text(row.phase.name), Text(row.event.rule), *depth, _what(row), *cells)
     return table
 
 
 def _lists(run: Run, words: LengthWords, *, is_verbose: bool) -> list[RenderableType]:
     """Return the same in two lines for each event: what moved, and what touches now and no more."""
-    rows = list(changes_of(run))
+    rows, loads = list(changes_of(run)), _driven(run)
     widths = len(str(len(rows))), max(len(row.event.rule) for row in rows)
     parts: list[RenderableType] = []
     for phase in run.phases:
@@ -56,15 +61,17 @@ def _lists(run: Run, words: LengthWords, *, is_verbose: bool) -> list[Renderable
         table.add_column(justify="right", min_width=widths[0])
         table.add_column(min_width=widths[1])
         for row in (row for row in rows if row.phase is phase):
-            table.add_row(Text(str(row.number)), Text(row.event.rule), _told(row, words, is_verbose=is_verbose))
+            table.add_row(Text(str(row.number)), Text(row.event.rule), _told(row, loads, words, is_verbose=is_verbose))
         parts += [*([""] if parts else []), Text(f"{phase.name}:"), table]
     return parts
 
 
-def _told(row: Change, words: LengthWords, *, is_verbose: bool) -> Text:
+def _told(row: Change, loads: Mapping[str, Load], words: LengthWords, *, is_verbose: bool) -> Text:
     told, motion = _what(row), row.seen
     if motion is not None:
         told.append(f" {words.amount(motion)} {'along' if motion.kind == 'travel' else 'about'} {line_of(motion)}")
+    if row.event.rule == DRIVEN:
+        told.append(f", driven to {_depth(row, loads, words)}")
     for sign, names in (("+", row.reached), ("-", row.left)):
         if names:
             told.append(f"\n{sign} {listed(names, is_verbose=is_verbose)}")
@@ -81,8 +88,21 @@ def listed(names: Sequence[str], *, is_verbose: bool) -> str:
 
 
 def _what(row: Change) -> Text:
-    """The motion, or what the phase came to where nothing moved."""
+    """The motion, or what the phase came to where nothing moved; beside a body that is driven the object stands."""
     if row.seen is not None:
         return Text(row.seen.kind)
     verdict = row.phase.verdict if row.event is row.phase.events[-1] else None
+    if row.event.rule == DRIVEN and (verdict is None or verdict in AT_REST):
+        return Text("stands still")
     return Text(verdict or "-", style=verdict_style(verdict) if verdict else "")
+
+
+def _driven(run: Run) -> dict[str, Load]:
+    """Return the loads that drive bodies, by the names of their phases."""
+    return {load.name: load for load in run.scene.loads if load.drive}
+
+
+def _depth(row: Change, loads: Mapping[str, Load], words: LengthWords) -> str:
+    """Return how far the bodies are driven after an event; empty in a phase that drives none."""
+    load = loads.get(row.phase.name)
+    return "" if load is None else words.depth(load, row.event.share)

@@ -19,6 +19,7 @@ MOST_ROWS = 30
 """A table has at most so many contacts, those with the greatest forces; ``--verbose`` prints all."""
 APART, NO_FORCE = "", "0"
 """What stands for a contact that is none at the end of a phase, and for one that bears nothing."""
+PRESSED = "forces of the load alone; a drive that cannot go on presses as hard as it is driven"
 
 
 def force_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -> list[RenderableType]:
@@ -36,6 +37,7 @@ def force_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -
         for phase in phases
         if phase.proof.shared
     ]
+    shares += [Text(f"{phase.name}: {PRESSED}") for phase in phases if phase.verdict in ("blocked", "jams")]
     parts: list[RenderableType] = []
     for table in tables:
         parts += [table, ""]

@@ -21,10 +21,11 @@ def plot_command(
     *,
     out: Annotated[FileName, FILE, Parameter(help="Picture file to write: .png, .svg or .pdf.")],
     kind: Annotated[
-        Literal["pose", "events", "play", "extremes"],
+        Literal["pose", "events", "drive", "play", "extremes"],
         Parameter(
-            help="pose: angles, way and contacts against the step. events: the scene after each event. play: how far"
-            " each freedom goes, and the points named with --at. extremes: the scene at each end of its play."
+            help="pose: angles, way and contacts against the step. events: the scene after each event. drive: the force"
+            " that drives bodies of the cage, contacts and pose over the way. play: how far each freedom goes, and the"
+            " points named with --at. extremes: the scene at each end of its play."
         ),
     ] = "pose",
     at: AtOption = (),
@@ -54,7 +55,11 @@ def plot_command(
     if kind in ("play", "extremes"):
         picture, said = _play_picture(kind, source, points, suffix)
     else:
-        picture, said = _run_picture(kind, run_of(source, method), suffix)
+        found = run_of(source, method)
+        if kind == "drive" and all(phase.drive is None for phase in found.run.phases):
+            sys.stderr.write("--kind drive: no phase of the run drives a body of the cage; give another kind\n")
+            return 2
+        picture, said = _run_picture(kind, found, suffix)
     try:
         write_whole(out, picture)
     except OSError as error:
@@ -66,12 +71,13 @@ def plot_command(
 
 def _run_picture(kind: str, source: RunFile, suffix: str) -> tuple[bytes, str]:
     """Return the picture of a run, and what it shows."""
+    from cagepose.views.drive_figure import drive_figure
     from cagepose.views.event_figure import event_figure
     from cagepose.views.pose_figure import pose_figure
     from cagepose.views.style import figure_bytes
 
     run = source.run
-    figure = (pose_figure if kind == "pose" else event_figure)(run, source.length_unit)
+    figure = {"pose": pose_figure, "events": event_figure, "drive": drive_figure}[kind](run, source.length_unit)
     return figure_bytes(figure, suffix), f"{run.scene.name}, {run.verdict} ({run.method})"
 
 

@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from cagepose.cli.console import print_all, screen_width, text_of, text_width
+from cagepose.cli.drive_report import drive_lines
 from cagepose.cli.event_table import event_table, listed
 from cagepose.cli.force_table import force_table
 from cagepose.cli.margin_report import margin_lines
@@ -21,7 +22,7 @@ from cagepose.files.words import LengthWords
 from cagepose.model.wording import components, short
 from cagepose.runs.cases import greatest_friction
 from cagepose.runs.methods import chosen_method
-from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, PhaseRun, Run
+from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, STOPPED, PhaseRun, Run
 from cagepose.studies.ending import run_kind
 from cagepose.studies.margin import Margin
 
@@ -102,6 +103,7 @@ class _Writer:
             *(line for phase in run.phases[:-1] if self.is_verbose for line in self._end(phase)),
             ("pose", POSES.get(run.verdict, "")),
             *self._end(run.phases[-1]),
+            *drive_lines(run, self.words),
             ("verdict", _verdicts(run)),
             *((f"proof of {phase.name}", _proof(phase)) for phase in run.phases[:-1] if self.is_verbose),
             ("mechanics" if run.is_contradicted else "proof", _proof(run.phases[-1])),
@@ -172,14 +174,15 @@ def _firmness(phase: PhaseRun) -> str:
 
 def _proof(phase: PhaseRun) -> str:
     proof = phase.proof
-    if phase.verdict not in AT_REST:
+    if phase.verdict not in AT_REST | STOPPED:
         return ""
     sizes = [f"residual {proof.residual:.1e}"]
     if proof.gap_work is not None and abs(proof.gap_work) > LEAST_GAP_WORK:
         sizes.append(f"gap work {proof.gap_work:.1e}")
     if proof.largest_force is not None and proof.largest_force > LARGE_FORCE_IN_LOADS:
         sizes.append(f"largest force {proof.largest_force:.3g} loads")
-    return f"{proof.verdict}: {proof.reason} ({', '.join(sizes)})"
+    beside = " as the bodies stand there" if phase.verdict in STOPPED else ""
+    return f"{proof.verdict}{beside}: {proof.reason} ({', '.join(sizes)})"
 
 
 def _critical(run: Run) -> str:

@@ -7,7 +7,7 @@ from rich.table import Table
 
 from cagepose.studies.ending import Kind, verdict_kind
 
-NUMBERS = ("#", "amount")
+NUMBERS = ("#", "amount", "driven to")
 """Columns of numbers."""
 STYLES: dict[Kind, str] = {
     "rest": "bold green",

@@ -6,14 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cagepose.errors import SceneError
+from cagepose.errors import Problem, SceneError
 from cagepose.exchange.mujoco_run import WINDOW_LIMIT, MujocoRest, MujocoScene
 from cagepose.exchange.solids import Assembly, assembly_of
+from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
-from cagepose.model.load import Load, Spring
+from cagepose.model.load import Load
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.model.spring import Spring
 from cagepose.model.surface import shape_mesh
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
 from cagepose.model.wording import few
@@ -86,12 +88,13 @@ def crosscheck(done: Run) -> Crosscheck:
     Raises
     ------
     SceneError
-        MuJoCo's format cannot hold a part of the scene, which is named.
+        MuJoCo's format cannot hold a part of the scene, or a load drives a body of the cage; which is named.
     MissingExtraError
         There is no MuJoCo.
     CageposeError
         MuJoCo's pose is no longer a number, or it had no room for all contacts.
     """
+    _expect_still(done.scene)
     assembly = assembly_of(done.scene)
     points = surface_points(done.scene.object)
     mujoco = MujocoScene(assembly, points)
@@ -101,6 +104,19 @@ def crosscheck(done: Run) -> Crosscheck:
         found.append(_checked(done, index, mujoco, assembly, points, start))
         start = found[-1].mujoco.pose if found[-1].agrees else phase.pose
     return Crosscheck(done, tuple(found), assembly.notes)
+
+
+def _expect_still(scene: Scene) -> None:
+    problems = [
+        Problem(
+            ("loads", index, "drive"),
+            f"{load.name!r} drives a body, and MuJoCo is asked where all of the cage stands still; leave the load out",
+        )
+        for index, load in enumerate(scene.loads)
+        if load.drive
+    ]
+    if problems:
+        raise SceneError(problems)
 
 
 def surface_points(held: Object) -> FloatArray:
@@ -153,7 +169,7 @@ def _left(done: Run, index: int, there: MujocoRest, points: FloatArray) -> float
         again = Scene(
             moved,
             scene.cage,
-            [_from(scene.loads[index], held.pose_world_object, there.pose)],
+            [_from(scene.cage, scene.loads[index], held.pose_world_object, there.pose)],
             friction_coefficient=scene.friction_coefficient,
             friction_of=scene.friction_of,
             metric=scene.metric,
@@ -165,18 +181,19 @@ def _left(done: Run, index: int, there: MujocoRest, points: FloatArray) -> float
     return None if ended.failed else apart_m(points, ended.pose, there.pose)
 
 
-def _from(load: Load, start: Pose, other: Pose) -> Load:
+def _from(cage: Cage, load: Load, start: Pose, other: Pose) -> Load:
     """Return a load for another start: a spring's preload is its tension at the start."""
 
     def length_m(spring: Spring, pose: Pose) -> float:
-        return float(np.linalg.norm(spring.to_world_m - pose.transform(spring.at_object_m)))
+        return float(np.linalg.norm(cage.spring_end_world(spring) - pose.transform(spring.at_object_m)))
 
     springs = [
         Spring(
             spring.at_object_m,
-            spring.to_world_m,
+            spring.to_m,
             spring.stiffness_n_per_m,
             spring.preload_n + spring.stiffness_n_per_m * (length_m(spring, other) - length_m(spring, start)),
+            of=spring.of,
         )
         for spring in load.springs
     ]

@@ -75,7 +75,7 @@ def notes_of_loads(scene: Scene) -> list[str]:
     found = not_kept(scene)
     if scene.object.mass_kg is None:
         found.append("the scene gives no mass; here it is 1 kg")
-    others = [load.name for load in scene.loads if not load.is_weight_alone]
+    others = [load.name for load in scene.loads if load.pushes or load.moments or load.springs]
     if others:
         found.append(f"forces, moments and springs are in the note for cagepose alone: {', '.join(others)}")
     return found

@@ -9,18 +9,22 @@ from typing import NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 
-from cagepose.errors import Key, Problem, SceneError
+from cagepose.errors import Key, Problem, SceneError, key_path
+from cagepose.files.build_loads import load_of
 from cagepose.files.meshes.mesh_file import read_mesh
 from cagepose.files.points_file import PointsTable
-from cagepose.files.schema import BoxModel, ForceModel, LoadModel, MomentModel, PoseModel, SceneModel, SpringModel
+from cagepose.files.schema import BoxModel, SceneModel
+from cagepose.files.schema_base import PoseModel
+from cagepose.files.schema_cage import CageBodyModel
 from cagepose.files.schema_shapes import CoefficientModel, ShapeModel
 from cagepose.files.triples import triples, whole_triples
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
+from cagepose.model.cage_body import CageBody
 from cagepose.model.facets import Facets
 from cagepose.model.hole import Chamfer, Hole
-from cagepose.model.load import Force, Load, Moment, Spring
+from cagepose.model.naming import place_of
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Adjustable, Scene
@@ -31,6 +35,8 @@ from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT, T
 Noun = TypeVar("Noun")
 Given = ParamSpec("Given")
 
+Body = tuple[Key, ...]
+"""Where a body stands in a scene file: ``("object",)``, ``("cage",)`` or ``("cage", "bodies", "mate")``."""
 CURRENT = Path()
 """The folder that names of files start from where there is no scene file."""
 
@@ -54,7 +60,7 @@ def build_scene(model: SceneModel, table: PointsTable | None, folder: Path = CUR
     builder = _Builder(model.units.length if model.units else "mm", folder)
     held = builder.make(("object",), builder.object, model)
     cage = builder.make(("cage",), builder.cage, model, table)
-    loads = [builder.make(("loads", index), builder.load, load, index) for index, load in enumerate(model.loads)]
+    loads = [builder.make(("loads", index), load_of, load, builder.unit) for index, load in enumerate(model.loads)]
     tolerances = builder.make(("tolerances",), builder.tolerances, model)
     friction_of = builder.friction_of(model, held, cage) if held is not None and cage is not None else {}
     builder.check_adjustable(model)
@@ -86,7 +92,7 @@ class _Builder:
         self.folder = folder
         self.problems: list[Problem] = []
         self.notes: list[str] = []
-        self.pieces: dict[tuple[str, int], list[str]] = {}  # names of what meshes are, by body and index
+        self.pieces: dict[tuple[Body, int], list[str]] = {}  # names of what meshes are, by body and index
 
     def make(
         self, prefix: tuple[Key, ...], maker: Callable[Given, Noun], *args: Given.args, **kwargs: Given.kwargs
@@ -101,7 +107,7 @@ class _Builder:
     def object(self, model: SceneModel) -> Object | None:
         part = model.object
         boxes = [self.make(("object", "boxes", index), self.box, box) for index, box in enumerate(part.boxes or [])]
-        shapes = self.shapes("object", part.shapes or [])
+        shapes = self.shapes(("object",), part.shapes or [])
         pose = self.make(("object", "pose"), self.pose, part.pose)
         if None in boxes or None in shapes:
             return None
@@ -119,23 +125,25 @@ class _Builder:
         pose = Pose(to_metres(model.position, self.unit), euler_zyx=_radians(model.euler_zyx_deg))
         return Box(to_metres(model.size, self.unit), pose, model.name)
 
-    def shapes(self, body: str, models: list[ShapeModel]) -> list[Shape | None]:
-        """Return the shapes of a body. Of a mesh that is several, all but the first stand last, so that numbers of
-        others stay where their keys say.
+    def shapes(self, body: Body, models: list[ShapeModel]) -> list[Shape | None]:
+        """Return the shapes of a body, which stands at a path. Of a mesh that is several, all but the first stand last,
+        so that numbers of others stay where their keys say.
         """
         first: list[Shape | None] = []
         others: list[Shape] = []
         for index, model in enumerate(models):
-            place: tuple[Key, ...] = (body, "shapes", index, *model.kinds_given())
+            place: tuple[Key, ...] = (*body, "shapes", index, *model.kinds_given())
             if model.mesh is None:
                 first.append(self.make(place, self.shape, model))
-            elif (found := self.make(place, self.mesh, model, index)) is None:
+            elif (found := self.make(place, self.mesh, model, mesh_name(body, index, model))) is None:
                 first.append(None)
             else:
                 self.pieces[body, index] = [str(piece.name) for piece in found if not isinstance(piece, Hole)]
                 first.append(found[0])
                 others += found[1:]
-        meshes = {models[index].name: names for (of, index), names in self.pieces.items() if of == body}
+        meshes = {
+            mesh_name(body, index, models[index]): names for (of, index), names in self.pieces.items() if of == body
+        }
         return [
             shape.cut_out_of([piece for name in shape.in_ for piece in meshes.get(name, [name])])
             if isinstance(shape, Hole)
@@ -173,10 +181,10 @@ class _Builder:
             length(model.hole.radius), length(model.hole.depth), chamfer, model.hole.in_ or (), pose, model.name
         )
 
-    def mesh(self, model: ShapeModel, index: int) -> list[Shape]:
+    def mesh(self, model: ShapeModel, name: str) -> list[Shape]:
         """Return what a mesh is, in its body's frame."""
         assert model.mesh is not None
-        path, name = self.folder / model.mesh.file, model.name or f"mesh{index + 1}"
+        path = self.folder / model.mesh.file
         try:
             found = read_mesh(path, model.mesh.unit, self.unit, name)
         except SceneError as error:
@@ -199,31 +207,53 @@ class _Builder:
 
     def cage(self, model: SceneModel, table: PointsTable | None) -> Cage | None:
         points, names = point_rows(model, table)
-        shapes = self.shapes("cage", model.cage.shapes or [])
-        if None in shapes:
+        shapes = self.shapes(("cage",), model.cage.shapes or [])
+        bodies = [
+            self.make(("cage", "bodies", name), self.cage_body, name, body)
+            for name, body in (model.cage.bodies or {}).items()
+        ]
+        if None in shapes or None in bodies:
             return None
         return Cage(
             to_metres(points, self.unit),
             names,
             self.pose(model.cage.pose),
             [shape for shape in shapes if shape is not None],
+            bodies=[body for body in bodies if body is not None],
+        )
+
+    def cage_body(self, name: str, model: CageBodyModel) -> CageBody | None:
+        shapes = self.shapes(("cage", "bodies", name), model.shapes or [])
+        if None in shapes:
+            return None
+        given = model.points or []
+        points, names = (list(given.values()), tuple(given)) if isinstance(given, dict) else (given, None)
+        return CageBody(
+            name,
+            to_metres(points, self.unit),
+            names,
+            self.pose(model.pose),
+            [shape for shape in shapes if shape is not None],
         )
 
     def friction_of(self, model: SceneModel, held: Object, cage: Cage) -> dict[str, float]:
         """Return the coefficients of all that have their own, by name; those of shapes stand beside them."""
         found = dict((model.friction and model.friction.of) or {})
-        in_object = dict(zip((path[:2] for path in held.part_paths), held.element_names, strict=True))
-        in_cage = dict(zip((path[:2] for path in cage.shape_paths), cage.element_names[len(cage.names) :], strict=True))
+        in_object = dict(zip(map(place_of, held.part_paths), held.element_names, strict=True))
+        in_cage = dict(zip(map(place_of, cage.shape_paths), cage.element_names[len(cage.names) :], strict=True))
         shared = set(in_object.values()) & set(cage.element_names)
-        for body, shapes, names in (
-            ("object", model.object.shapes, in_object),
-            ("cage", model.cage.shapes, in_cage),
-        ):
+        bodies: list[tuple[Body, list[ShapeModel] | None]] = [
+            (("object",), model.object.shapes),
+            (("cage",), model.cage.shapes),
+            *((("cage", "bodies", name), body.shapes) for name, body in (model.cage.bodies or {}).items()),
+        ]
+        for body, shapes in bodies:
+            names = in_object if body == ("object",) else in_cage
             for index, shape in enumerate(shapes or []):
                 if (coefficient := _coefficient(shape.friction)) is None:
                     continue
-                place = (body, "shapes", index, "friction")
-                for name in self.pieces.get((body, index), [names["shapes", index]]):
+                place = (*body, "shapes", index, "friction")
+                for name in self.pieces.get((body, index), [names[*body[1:], "shapes", index]]):
                     if name in shared:
                         found_twice = (
                             f"is that of {name!r}, a name in the cage and in the object; rename one of the two"
@@ -237,43 +267,25 @@ class _Builder:
 
     def check_adjustable(self, model: SceneModel) -> None:
         """Note numbers that would move one piece of a mesh alone."""
-        several = [f"{body}.shapes[{index}]." for (body, index), names in self.pieces.items() if len(names) > 1]
+        several = [
+            f"{key_path(body)}.shapes[{index}]." for (body, index), names in self.pieces.items() if len(names) > 1
+        ]
         for name, entry in (model.adjustable or {}).items():
             if entry.key.startswith(tuple(several)):
                 message = "points into a mesh that is several shapes, which do not move together; move its body instead"
                 self.problems.append(Problem(("adjustable", name, "key"), message))
-
-    def load(self, model: LoadModel, index: int) -> Load | None:
-        springs = [
-            self.make(("loads", index, "springs", number), self.spring, spring)
-            for number, spring in enumerate(model.springs or [])
-        ]
-        if None in springs:
-            return None
-        return Load(
-            model.name,
-            gravity=model.gravity,
-            force=None if model.force is None else self.force(model.force),
-            forces=[self.force(force) for force in model.forces or []],
-            moments=[self.moment(moment) for moment in model.moments or []],
-            springs=[spring for spring in springs if spring is not None],
-        )
-
-    def force(self, model: ForceModel) -> Force:
-        return Force(model.direction, to_metres(model.at, self.unit), model.magnitude, follows=bool(model.follows))
-
-    def moment(self, model: MomentModel) -> Moment:
-        return Moment(model.direction, float(to_metres(model.magnitude, self.unit)), follows=bool(model.follows))
-
-    def spring(self, model: SpringModel) -> Spring:
-        per_metre = model.stiffness / float(to_metres(1.0, self.unit))
-        return Spring(to_metres(model.at, self.unit), to_metres(model.to, self.unit), per_metre, model.preload or 0.0)
 
     def tolerances(self, model: SceneModel) -> Tolerances:
         given = model.tolerances
         touch = TOUCH_DEFAULT if given is None or given.touch is None else given.touch
         band_deg = None if given is None else given.grazing_band_deg
         return Tolerances(touch, GRAZING_BAND_DEFAULT_RAD if band_deg is None else math.radians(band_deg))
+
+
+def mesh_name(body: Body, index: int, model: ShapeModel) -> str:
+    """Return the name that the pieces of a mesh begin with."""
+    of_body = f"{body[2]}/" if len(body) == 3 else ""
+    return model.name or f"{of_body}mesh{index + 1}"
 
 
 def point_rows(model: SceneModel, table: PointsTable | None) -> tuple[list[list[float]], tuple[str, ...] | None]:

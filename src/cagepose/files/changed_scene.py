@@ -57,9 +57,12 @@ def changed_scene(scene: Scene, changes: Mapping[str, object]) -> Scene:
 
 def _by_index(scene: Scene, data: dict[str, Any], path: Path) -> Path:
     """Return a path with the name of a point as its index, where points stand in a list without names."""
-    if path[:2] == ("cage", "points") and path[2:3] and path[2] in scene.cage.names:
-        is_list = isinstance(value_at(data, path[:2]), list)
-        return (*path[:2], scene.cage.names.index(str(path[2])), *path[3:]) if is_list else path
+    names_at: dict[Path, tuple[str, ...]] = {("cage", "points"): scene.cage.standing.names}
+    names_at |= {("cage", "bodies", body.name, "points"): body.names for body in scene.cage.bodies}
+    for at, names in names_at.items():
+        if path[: len(at)] == at and path[len(at) :] and path[len(at)] in names:
+            is_list = isinstance(value_at(data, at), list)
+            return (*at, names.index(str(path[len(at)])), *path[len(at) + 1 :]) if is_list else path
     return path
 
 

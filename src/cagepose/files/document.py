@@ -12,6 +12,8 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.runs.driven import BodyRun, DriveRun
+from cagepose.runs.drives import turns_alone
 from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.proof import FreeMotion, Proof
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
@@ -64,21 +66,61 @@ class _Writer:
     def pose(self, pose: Pose) -> dict[str, Any]:
         return {
             "position": self._lengths(pose.position_m),
-            "euler_zyx_deg": [_plain(math.degrees(angle)) for angle in pose.euler_zyx],
+            "euler_zyx_deg": _angles(pose),
             "quat_wxyz": _numbers(pose.quaternion_wxyz),
             "center_of_gravity": self._lengths(pose.transform(self.scene.object.center_of_gravity_m)),
         }
 
     def phase(self, phase: PhaseRun, load: Load) -> dict[str, Any]:
-        return {
+        events = [self._event(event) for event in phase.events]
+        if load.drive:
+            events = [shown | {"share": event.share} for shown, event in zip(events, phase.events, strict=True)]
+        found: dict[str, Any] = {
             "name": phase.name,
             "verdict": phase.verdict,
             "force_unit": force_unit(self.scene, load),
             "pose": self.pose(phase.pose),
-            "events": [self._event(event) for event in phase.events],
+            "events": events,
             "contacts": [self._contact(contact) for contact in phase.contacts],
             "proof": self._proof(phase.proof),
         }
+        if load.drive:
+            found["drive"] = None if phase.drive is None else self._drive(phase.drive, load)
+        return found
+
+    def _drive(self, drive: DriveRun, load: Load) -> dict[str, Any]:
+        curve = drive.curve
+        return {
+            "share": drive.share,
+            "along": self._along(drive.along, load, drive.share),
+            "greatest": {
+                "along": self._along(drive.greatest_along, load, drive.greatest_share),
+                "share": drive.greatest_share,
+            },
+            "work": self._length(drive.work_j),
+            "jam_possible": [list(shares) for shares in drive.jam_possible],
+            "critical_jam_friction": drive.critical_jam_friction,
+            "bodies": {name: self._body(body, load, drive.share) for name, body in drive.bodies.items()},
+            "curve": {
+                "share": _numbers(curve.share),
+                "along": [self._along(along, load, share) for share, along, _ in curve.places()],
+                "position": [self._lengths(position) for position in curve.position_m],
+                "euler_zyx_deg": [_angles(pose) for _, _, pose in curve.places()],
+            },
+        }
+
+    def _body(self, body: BodyRun, load: Load, share: float) -> dict[str, Any]:
+        return {
+            "travel": self._length(body.travel_m),
+            "angle_deg": _plain(math.degrees(body.angle_rad)),
+            "force": _numbers(body.force_n),
+            "moment": self._lengths(body.moment_nm),
+            "along": self._along(body.along, load, share),
+        }
+
+    def _along(self, along: float, load: Load, share: float) -> float:
+        """A force for a travel, a moment for turns alone."""
+        return self._length(along) if turns_alone(load, share) else _plain(along)
 
     def _proof(self, proof: Proof) -> dict[str, Any]:
         critical = proof.critical_friction
@@ -142,6 +184,10 @@ class _Writer:
 
     def _lengths(self, lengths_m: FloatArray) -> list[float]:
         return _numbers(from_metres(lengths_m, self.unit))
+
+
+def _angles(pose: Pose) -> list[float]:
+    return [_plain(math.degrees(angle)) for angle in pose.euler_zyx]
 
 
 def _plain(value: float) -> float:

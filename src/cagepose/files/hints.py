@@ -47,6 +47,9 @@ OTHER_WORDS = {
     "centre_of_mass": "center_of_gravity",
     "centre_of_gravity": "center_of_gravity",
     "acceleration": "gravity",
+    "translation": "travel",
+    "axis": "about",
+    "body": "of",
 }
 """What people call keys, and what they are called here."""
 _EULER = re.compile(r"euler_?([xyz]{3})(_?deg|_?rad)?")
@@ -63,7 +66,9 @@ def meant_by_value(path: Path, value: object) -> str | None:
         return f"write friction: {{coefficient: {value}}}"
     if key == "gravity" and not isinstance(value, list):
         return _gravity(value)
-    if key in ("force", "moment") and _is_vector(value):
+    if key == "stop_at" and _is_number(value):
+        return f"write stop_at: {{force: {value}}}, or {{moment: {value}}} of turns"
+    if key in ("force", "moment") and path[-2:-1] != ("stop_at",) and _is_vector(value):
         at = ", at: [0, 0, 0]" if key == "force" else ""
         length = math.hypot(*value) if isinstance(value, list) else 0.0
         return f"write {key}: {{direction: {json.dumps(value)}{at}, magnitude: {length:.6g}}}"
@@ -71,7 +76,7 @@ def meant_by_value(path: Path, value: object) -> str | None:
         return f"write pose: {{position: {json.dumps(value)}}}"
     if key == "size" and _is_number(value):
         return f"write the three edge lengths: size: [{value}, {value}, {value}]"
-    if path[:2] == ("cage", "points") and isinstance(key, int) and _is_number(value):
+    if path[:1] == ("cage",) and path[-2:-1] == ("points",) and isinstance(key, int) and _is_number(value):
         return "put each point into brackets of its own: points: [[4, 4, 0], [-4, 4, 0]]"
     return None
 

@@ -28,6 +28,7 @@ _WANTED = {
 _FORMS = {
     "points": "a list of [x, y, z], a NAME: [x, y, z] for each point, or file: points.csv",
     "friction": "a coefficient, or coefficient: or angle_deg: with a number",
+    "drive": "travel: [x, y, z], turn: with about: and angle_deg:, both, or a list of such",
 }
 """The keys that may be given in several forms."""
 _LIMITS = {
@@ -82,10 +83,13 @@ def shown(value: object) -> str:
 
 def _file_path(location: tuple[Key, ...]) -> Path:
     """Pydantic's location without what it adds: the form of points and friction, and a mark for keys."""
-    if location[:2] == ("cage", "points"):
-        location = location[:2] + location[3:]
-    if _is_shape(location[:3]) and location[3:4] == ("friction",):
-        location = location[:4] + location[5:]
+    at = 3 if location[:2] == ("cage", "bodies") else 1  # what a body has, a cage has
+    if location[:1] == ("cage",) and location[at : at + 1] == ("points",):
+        location = location[: at + 1] + location[at + 2 :]
+    if _is_shape(location[: at + 2]) and location[at + 2 : at + 3] == ("friction",):
+        location = location[: at + 3] + location[at + 4 :]
+    if location[:1] == ("loads",) and location[2:3] == ("drive",):
+        location = location[:4] + (location[5:] if location[4:5] != ("[key]",) else location[4:])
     return location[:-1] if location[-1:] == ("[key]",) else location
 
 
@@ -101,7 +105,8 @@ def _message(details: ErrorDetails, path: Path, data: object, model: type[BaseMo
             return _unknown_shape(str(path[-1]), known, homes)
         return _unknown_key(path, known, homes, data, model)
     if kind == "union_tag_not_found":
-        return f"is {shown(found)}; give {_FORMS[str(path[-1])]}"
+        form = "drive" if path[2:3] == ("drive",) else str(path[-1])
+        return f"is {shown(found)}; give {_FORMS[form]}"
     if model is SceneModel and (meant := meant_by_value(path, found)) is not None:
         return f"is {shown(found)}; {meant}"
     if kind == "list_type" and isinstance(found, dict) and _holds_mappings(path, data, model):
@@ -174,13 +179,16 @@ def _close(found: str, known: list[str]) -> str:
 
 
 def _is_shape(path: Path) -> bool:
-    """Whether a path leads to one of the shapes of the object or of the cage."""
-    return len(path) == 3 and path[0] in ("object", "cage") and path[1] == "shapes"
+    """Whether a path leads to one of the shapes of the object, of the cage or of one of its bodies."""
+    of = path[:1] if path[:2] != ("cage", "bodies") else path[:3]
+    return path[:1] in (("object",), ("cage",)) and len(path) == len(of) + 2 and path[len(of)] == "shapes"
 
 
 @cache
 def _homes(model: type[BaseModel]) -> dict[str, list[str]]:
-    """Return for each key the mappings that have it, as ``loads[i].force``; none for keys of the file itself."""
+    """Return for each key the mappings that have it, as ``loads[i].force``; none for keys of the file itself. Those
+    within mappings whose keys are names, as ``cage.bodies.NAME``, count where there are no others.
+    """
     homes: dict[str, list[str]] = {}
 
     def visit(node: dict[str, Any], place: str) -> None:
@@ -189,11 +197,13 @@ def _homes(model: type[BaseModel]) -> dict[str, list[str]]:
                 if place and place not in homes.setdefault(key, []):
                     homes[key].append(place)
                 visit(child, f"{place}.{key}" if place else key)
+            if isinstance(part.get("additionalProperties"), dict):
+                visit(part["additionalProperties"], f"{place}.NAME")
             if isinstance(part.get("items"), dict):
                 visit(part["items"], f"{place}[i]")
 
     visit(_schema(model), "")
-    return homes
+    return {key: [place for place in places if "NAME" not in place] or places for key, places in homes.items()}
 
 
 def _example(path: Path, data: object, model: type[BaseModel]) -> str:

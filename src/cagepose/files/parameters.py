@@ -15,8 +15,9 @@ if TYPE_CHECKING:
 
 TEXT_KEYS = {"name", "file", "key", "method", "metric"}
 """What stands at these is text, and no expression, whatever it begins with; but a parameter may have such a name."""
-LENGTH_UNIT, NAMES_OF_PARTS = ("units", "length"), ("hole", "in")
-"""Text, too, of keys that elsewhere hold numbers; the latter with an index behind it, or without."""
+LENGTH_UNIT, NAMES_OF_PARTS, NAME_OF_BODY = ("units", "length"), ("hole", "in"), ("springs", "of")
+"""Text, too, of keys that elsewhere hold numbers; the second with an index behind it, or without, the third with one
+between its two."""
 RESERVED = {"abs", "min", "max"}
 
 
@@ -149,6 +150,7 @@ def _is_expression(text: str, path: Path) -> bool:
     if not text.startswith("=") or not path:
         return False
     is_text = path[-1] in TEXT_KEYS or path == LENGTH_UNIT or NAMES_OF_PARTS in (path[-2:], path[-3:-1])
+    is_text = is_text or path[-3:][::2] == NAME_OF_BODY
     return path[0] == "parameters" or not is_text
 
 

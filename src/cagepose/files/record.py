@@ -1,8 +1,8 @@
 """Runs and scenes as plain data without loss: SI units, every float to its last digit.
 
 One rule serves all classes: what the constructor takes is saved, from the attribute of the same name, or of that name
-with a frame (``pose`` from ``pose_world_object``). A field that is added to a class is so saved and read as well; one
-with a default may be missing from a file, which then is older than the field.
+with a frame (``pose`` from ``pose_world_object``) or a unit (``travel`` from ``travel_m``). A field that is added to a
+class is so saved and read as well; one with a default may be missing from a file, which then is older than the field.
 
 Reading is strict, and a damaged file is refused by the place of the damage: each class becomes a pydantic model.
 """
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache, partial, reduce
 from inspect import Parameter, signature
 from operator import or_
@@ -30,6 +30,7 @@ from cagepose.runs.run import Motion
 Kind = TypeVar("Kind")
 
 FRAME = re.compile("_(world|object|cage|box|body|shape)(?![a-z])")
+UNIT = re.compile("_(m|rad)$")
 PARTS_OF_A_SCENE = (Object, Cage, Tolerances)
 """Their fields stand among those of the scene."""
 KEYS = {
@@ -38,11 +39,15 @@ KEYS = {
     "places_world": "places_m",
     "names": "point_names",
     "points_cage": "points_m",
+    "points_body": "points_m",
     "pose_world_cage": "cage_pose",
     "Cage.shapes": "cage_shapes",
     "Cage.holes": "cage_holes",
+    "bodies": "cage_bodies",
 }
 """The attributes (some of one class alone) whose key is another than their name without its frame."""
+STANDING = {"points_cage": "points_m", "names": "names", "shapes": "shapes", "holes": "holes"}
+"""What a cage has together with its bodies, and in `Cage.standing` without them, as its constructor takes it."""
 INFINITE: dict[str, str | None] = {"distance_m": None}
 """What stands for an infinite number, which JSON has not, in some attributes; in all others, `NO_NUMBER`."""
 NO_NUMBER = "none"
@@ -53,7 +58,7 @@ def record_of(thing: object) -> dict[str, Any]:
     record: dict[str, Any] = {}
     kind: type = type(thing)
     for field in _fields(kind):
-        value = getattr(thing, field.attribute)
+        value = _value_of(thing, field.attribute)
         if field.kind in PARTS_OF_A_SCENE:
             record |= record_of(value)
         elif _choices(field.kind):
@@ -61,6 +66,12 @@ def record_of(thing: object) -> dict[str, Any]:
         else:
             record[field.key] = _plain(value, field.attribute)
     return record
+
+
+def _value_of(thing: object, attribute: str) -> Any:
+    if isinstance(thing, Cage) and attribute in STANDING:
+        return getattr(thing.standing, STANDING[attribute])
+    return getattr(thing, attribute)
 
 
 def from_record(kind: type[Kind], record: object) -> Kind:
@@ -94,7 +105,8 @@ class _Field(NamedTuple):
 @cache
 def _fields(kind: type) -> list[_Field]:
     kinds = get_type_hints(kind, include_extras=True)
-    attributes = {**{FRAME.sub("", name): name for name in kinds}, **{name: name for name in kinds}}
+    framed = {FRAME.sub("", name): name for name in kinds}
+    attributes = {UNIT.sub("", key): name for key, name in framed.items()} | framed | {name: name for name in kinds}
     return [
         _Field(
             key=KEYS.get(f"{kind.__name__}.{attributes[argument]}")
@@ -125,6 +137,8 @@ def _plain(value: Any, attribute: str) -> Any:
         return value.tolist()
     if isinstance(value, tuple):
         return [_plain(item, attribute) for item in value]
+    if isinstance(value, Mapping):
+        return {key: _plain(item, attribute) for key, item in value.items()}
     if isinstance(value, float) and math.isinf(value):
         return INFINITE.get(attribute, NO_NUMBER)
     return record_of(value) if _is_ours(type(value)) else value
@@ -186,6 +200,8 @@ def _readable(kind: Any, attribute: str) -> Any:
     if origin is tuple:
         items = tuple.__class_getitem__(tuple(_readable(part, attribute) for part in parts))
         return Annotated[items, Strict(False)]  # else pydantic makes no tuple of a list
+    if origin is dict:
+        return dict.__class_getitem__((parts[0], _readable(parts[1], attribute)))
     if origin in (Union, UnionType):
         return reduce(or_, (_readable(part, attribute) for part in parts))
     if kind is float:

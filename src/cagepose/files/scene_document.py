@@ -18,13 +18,16 @@ from cagepose.files.triples import text_of
 from cagepose.files.units import LengthUnit, from_metres, to_metres
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
+from cagepose.model.cage_elements import Elements
+from cagepose.model.drive import Drive
 from cagepose.model.facets import Facets
 from cagepose.model.hole import Hole
-from cagepose.model.load import Force, Load, Moment, Spring
+from cagepose.model.load import Force, Load, Moment
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Convex, Shape
+from cagepose.model.spring import Spring
 from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT
 
 FEWEST_DIGITS, MOST_DIGITS = 6, 17
@@ -116,15 +119,27 @@ class SceneWriter:
         return found
 
     def cage(self, cage: Cage) -> dict[str, Any]:
-        found: dict[str, Any] = {}
-        points = [self.lengths(point) for point in cage.points_cage]
-        if cage.names == tuple(f"C{index + 1}" for index in range(len(points))):
-            found |= {"points": points} if points else {}
-        else:
-            found["points"] = dict(zip(cage.names, points, strict=True))
-        found |= self.parts(cage.shape_paths, (*cage.shapes, *cage.holes))
+        found = self.elements(cage.standing, "")
+        if cage.bodies:
+            found["bodies"] = {
+                body.name: {**self.elements(body.own, f"{body.name}/"), "pose": self.pose(body.pose_cage_body)}
+                for body in cage.bodies
+            }
         found["pose"] = self.pose(cage.pose_world_cage)
         return found
+
+    def elements(self, elements: Elements, prefix: str) -> dict[str, Any]:
+        """Return the points and shapes of a cage or a body; names that begin with ``prefix`` and say no more than which
+        point it is are left out.
+        """
+        found: dict[str, Any] = {}
+        points = [self.lengths(point) for point in elements.points_m]
+        if elements.names == tuple(f"{prefix}C{index + 1}" for index in range(len(points))):
+            found |= {"points": points} if points else {}
+        else:
+            found["points"] = dict(zip(elements.names, points, strict=True))
+        paths = (*elements.shape_paths, *elements.hole_paths)
+        return found | self.parts(paths, (*elements.shapes, *elements.holes))
 
     def parts(self, paths: Sequence[tuple[Any, ...]], parts: Sequence[Shape]) -> dict[str, Any]:
         """Return boxes and shapes in the lists and the order in which they were given; holes stand among shapes."""
@@ -190,6 +205,8 @@ class SceneWriter:
                 "forces": [self.force(force) for force in load.forces] or None,
                 "moments": [self.moment(moment) for moment in load.moments] or None,
                 "springs": [self.spring(spring) for spring in load.springs] or None,
+                "drive": {name: self.legs(legs) for name, legs in load.drive.items()} or None,
+                "stop_at": self.limit(load),
             }
         )
 
@@ -205,10 +222,30 @@ class SceneWriter:
         wanted = spring.stiffness_n_per_m
         return {
             "at": self.lengths(spring.at_object_m),
-            "to": self.lengths(spring.to_world_m),
+            "to": self.lengths(spring.to_m),
             "stiffness": _shortest(wanted * self.metres, wanted, lambda shown: shown / self.metres),
             "preload": _plain(spring.preload_n),
+            **_given({"of": spring.of}),
         }
+
+    def legs(self, legs: Sequence[Drive]) -> dict[str, Any] | list[dict[str, Any]]:
+        found = [self.leg(leg) for leg in legs]
+        return found[0] if len(found) == 1 else found
+
+    def leg(self, leg: Drive) -> dict[str, Any]:
+        found: dict[str, Any] = {} if leg.travel_m is None else {"travel": self.lengths(leg.travel_m)}
+        if leg.about_cage is not None and leg.through_cage_m is not None and leg.angle_rad is not None:
+            found["turn"] = {
+                "about": _plain_list(leg.about_cage),
+                "through": self.lengths(leg.through_cage_m),
+                "angle_deg": _shortest(math.degrees(leg.angle_rad), leg.angle_rad, math.radians),
+            }
+        return found
+
+    def limit(self, load: Load) -> dict[str, Any] | None:
+        if load.stop_at is None:
+            return None
+        return {"moment": self.length(load.stop_at)} if load.stops_at_moment else {"force": _plain(load.stop_at)}
 
     def length(self, length_m: float) -> float:
         unit = self.unit

@@ -20,7 +20,8 @@ from cagepose.files.messages import Finding, schema_findings, shown
 from cagepose.files.parameters import Expressions, evaluated, expression_at
 from cagepose.files.points_file import POINTS_KEY, PointsTable, read_points
 from cagepose.files.read import read_text, starts_as_run
-from cagepose.files.schema import PointsFileModel, SceneModel
+from cagepose.files.schema import SceneModel
+from cagepose.files.schema_cage import PointsFileModel
 from cagepose.files.units import LengthUnit
 from cagepose.files.yaml_source import MAX_DEPTH, YamlSource, parse_yaml
 from cagepose.model.scene import Scene
@@ -296,6 +297,10 @@ class _Places:
 
     def _in_data(self, path: KeyPath) -> KeyPath:
         """Point names as indices, where the points stand in rows."""
+        if path[:2] == ("cage", "bodies") and path[3:4] == ("points",) and len(path) > 4:
+            rows = value_at(self.yaml.data, path[:4])
+            own = {f"{path[2]}/C{index + 1}": index for index in range(len(rows) if isinstance(rows, list) else 0)}
+            return (*path[:4], own.get(str(path[4]), path[4]), *path[5:])
         if path[:2] != POINTS_KEY[:2] or len(path) < 3 or path == POINTS_KEY or path[2] not in self._rows:
             return path
         return (*path[:2], self._rows[path[2]], *path[3:])

@@ -11,11 +11,8 @@ from typing import Annotated, Any
 from pydantic import (
     AfterValidator,
     ConfigDict,
-    Discriminator,
     Field,
-    Tag,
     WithJsonSchema,
-    model_validator,
 )
 
 from cagepose.files.parameters import parameter_name_message
@@ -25,20 +22,21 @@ from cagepose.files.schema_base import (
     Name,
     NotNegative,
     Number,
+    PoseModel,
     Positive,
-    Quaternion,
     Size,
     Vector,
     json_schema,
     wrong,
 )
+from cagepose.files.schema_cage import POINTS, CageModel
+from cagepose.files.schema_driven import Drives, StopModel
 from cagepose.files.schema_shapes import CoefficientModel, Shapes, either
 from cagepose.files.units import LengthUnit
 from cagepose.model.methods import DEFAULT_METHOD, DEFAULT_METRIC, METHODS, NO_SLIP_ANGLE_DEFAULT_RAD, Metric
 from cagepose.model.tolerances import TOUCH_DEFAULT, TOUCH_GREATEST, TOUCH_LEAST
 
 _BOX = {"size": [10, 20, 30], "position": [0, 0, 0]}
-_POINTS = [[4, 4, 0], [-4, 4, 0], [0, -4, 0]]
 
 
 def _known_method(name: str) -> str:
@@ -53,15 +51,6 @@ def _ordered(limits: list[float]) -> list[float]:
     return limits
 
 
-def _points_form(value: object) -> str | None:
-    """Which of the three ways to give points this is."""
-    if isinstance(value, list):
-        return "list"
-    if isinstance(value, dict):
-        return "file" if "file" in value and not isinstance(value["file"], list) else "names"
-    return None
-
-
 Method = Annotated[str, AfterValidator(_known_method), WithJsonSchema({"type": "string", "enum": list(METHODS)})]
 
 
@@ -71,26 +60,6 @@ class UnitsModel(Mapping):
     """
 
     length: LengthUnit = Field("mm", description="Unit of every length in this file.")
-
-
-class PoseModel(Mapping):
-    """Where something is and how it is turned. What is left out is zero."""
-
-    position: Vector | None = Field(None, description="Origin [x, y, z].", examples=[[2, 4, 10]])
-    euler_zyx_deg: Vector | None = Field(
-        None, description="Yaw about z, then pitch about y, then roll about x, in degrees.", examples=[[0, 0.1, 0]]
-    )
-    quat_wxyz: Quaternion | None = Field(
-        None,
-        description="Instead of euler_zyx_deg: a quaternion, scalar first.",
-        examples=[[1, 0, 0, 0]],
-    )
-
-    @model_validator(mode="after")
-    def _one_orientation(self) -> PoseModel:
-        if self.euler_zyx_deg is not None and self.quat_wxyz is not None:
-            raise wrong("has both euler_zyx_deg and quat_wxyz; keep one of them")
-        return self
 
 
 class BoxModel(Mapping):
@@ -134,42 +103,6 @@ class ObjectModel(Mapping):
     pose: PoseModel | None = Field(None, description="Where the object starts: its origin in the world.")
 
 
-class PointsFileModel(Mapping):
-    """Points in a file of their own."""
-
-    file: str = Field(
-        min_length=1,
-        description="CSV file beside this one, rows of x,y,z or name,x,y,z in the scene's length unit.",
-        examples=["points.csv"],
-    )
-
-
-Points = Annotated[
-    Annotated[list[Vector], Field(min_length=1, title="Points named C1, C2, ..."), Tag("list")]
-    | Annotated[dict[Name, Vector], Field(min_length=1, title="Points with names"), Tag("names")]
-    | Annotated[PointsFileModel, Tag("file")],
-    Discriminator(_points_form),
-]
-
-
-class CageModel(Mapping):
-    """What holds it: points and shapes that do not move."""
-
-    model_config = ConfigDict(json_schema_extra=either("points", "shapes"))
-
-    points: Points | None = Field(
-        None,
-        description="A list of [x, y, z], or NAME: [x, y, z] for each, or file: points.csv.",
-        examples=[_POINTS],
-    )
-    shapes: Shapes | None = Field(
-        None,
-        description="Shapes in the cage's frame.",
-        examples=[[{"cylinder": {"radius": 5, "length": 20}, "position": [0, 0, 0]}]],
-    )
-    pose: PoseModel | None = Field(None, description="Moves all points and shapes at once: a misaligned cage.")
-
-
 class ForceModel(Mapping):
     """A push at one point of the object."""
 
@@ -202,12 +135,18 @@ class MomentModel(Mapping):
 
 
 class SpringModel(Mapping):
-    """A straight spring from a point of the object to a point of the world. Its tension along the line is the preload
-    plus the stiffness times what it is longer than at the object's start pose.
+    """A straight spring from a point of the object to a point of the world, or of a body of the cage. Its tension along
+    the line is the preload plus the stiffness times what it is longer than at the start poses.
     """
 
     at: Vector = Field(description="Where it holds the object, in the object's frame.", examples=[[0, 0, 0]])
-    to: Vector = Field(description="Where it is held itself, in the world.", examples=[[0, 0, 50]])
+    to: Vector = Field(
+        description="Where it is held itself, in the world, or in the frame of the body it rides on.",
+        examples=[[0, 0, 50]],
+    )
+    of: Name | None = Field(
+        None, description="The body of the cage that its far end rides on; left out: the world.", examples=["mate"]
+    )
     stiffness: NotNegative = Field(
         description="Newtons for each unit of length of the file (N/mm with mm); 0: the tension is the preload.",
         examples=[0.5],
@@ -237,6 +176,15 @@ class LoadModel(Mapping):
     )
     springs: Annotated[list[SpringModel], Field(min_length=1)] | None = Field(
         None, description="Springs.", examples=[[{"at": [0, 0, 0], "to": [0, 0, 50], "stiffness": 0.5}]]
+    )
+    drive: Drives | None = Field(
+        None,
+        description="BODY: its way (quasistatic): a travel, a turn, both, or a list of such, one after the other. All"
+        " bodies move together, and stay where they were driven.",
+        examples=[{"mate": {"travel": [-25, 0, 0]}}],
+    )
+    stop_at: StopModel | None = Field(
+        None, description="At which force or moment the drive stops; left out: at none.", examples=[{"force": 200}]
     )
 
 
@@ -293,7 +241,7 @@ class SceneModel(Mapping):
         examples=[{"play": 0.5}],
     )
     object: ObjectModel = Field(description="The part that is held.", examples=[{"boxes": [_BOX]}])
-    cage: CageModel = Field(description="What holds it.", examples=[{"points": _POINTS}])
+    cage: CageModel = Field(description="What holds it.", examples=[{"points": POINTS}])
     loads: list[LoadModel] = Field(
         min_length=1, description="Phases, run in order.", examples=[[{"name": "gravity", "gravity": [0, 0, -1]}]]
     )

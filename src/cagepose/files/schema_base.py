@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, model_validator
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import PydanticCustomError
 
@@ -51,6 +51,26 @@ class Mapping(BaseModel):
 
     # Models are built when they are first asked for: those that are parts of another only there, and not twice.
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
+
+
+class PoseModel(Mapping):
+    """Where something is and how it is turned. What is left out is zero."""
+
+    position: Vector | None = Field(None, description="Origin [x, y, z].", examples=[[2, 4, 10]])
+    euler_zyx_deg: Vector | None = Field(
+        None, description="Yaw about z, then pitch about y, then roll about x, in degrees.", examples=[[0, 0.1, 0]]
+    )
+    quat_wxyz: Quaternion | None = Field(
+        None,
+        description="Instead of euler_zyx_deg: a quaternion, scalar first.",
+        examples=[[1, 0, 0, 0]],
+    )
+
+    @model_validator(mode="after")
+    def _one_orientation(self) -> PoseModel:
+        if self.euler_zyx_deg is not None and self.quat_wxyz is not None:
+            raise wrong("has both euler_zyx_deg and quat_wxyz; keep one of them")
+        return self
 
 
 def json_schema(model: type[BaseModel]) -> dict[str, Any]:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from cagepose.files.units import LengthUnit, from_metres
+from cagepose.model.drive import Drive
+from cagepose.model.load import Load
 from cagepose.model.wording import components, short
 from cagepose.runs.changes import Seen
+from cagepose.runs.drives import way_of
 from cagepose.runs.run import Motion
 
 
@@ -31,6 +34,25 @@ class LengthWords:
             return "nothing ahead"
         distance = f"{short(float(from_metres(motion.distance_m, self.unit)), digits, self.noise)} {self.unit}"
         return f"{distance}, {angle}" if motion.angle_rad else distance
+
+    def scaled(self, value: float, noise: float) -> str:
+        """Return a moment or a work, which have a length in them, of newtons and metres."""
+        return short(float(from_metres(value, self.unit)), 6, float(from_metres(noise, self.unit)))
+
+    def way(self, legs: Sequence[Drive], share: float) -> str:
+        """Return how far a body got after a share of its legs, as ``12.5 mm`` or ``30 deg``, or both."""
+        travel, angle = way_of(legs, share)
+        told = [f"{self.lengths([travel])} {self.unit}"] if any(not leg.is_turn for leg in legs) else []
+        if any(leg.about_cage is not None for leg in legs):
+            told.append(f"{short(math.degrees(angle), 6, 1e-10)} deg")
+        return ", ".join(told)
+
+    def depth(self, load: Load, share: float) -> str:
+        """Return how far a phase's drive got: the way of the one body that is driven, or the share of several."""
+        if len(load.drive) == 1:
+            (legs,) = load.drive.values()
+            return self.way(legs, share)
+        return f"{short(100.0 * share, 4, 1e-10)} %"
 
 
 def line_of(motion: Motion | Seen) -> str:

@@ -12,18 +12,24 @@ from numpy.typing import ArrayLike
 
 from cagepose.errors import Key
 from cagepose.model.box import Box
-from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, duplicates, finite_array
+from cagepose.model.cage_body import CageBody
+from cagepose.model.cage_elements import Elements, elements_of
+from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, duplicates
 from cagepose.model.facets import Facets
-from cagepose.model.hole import Hole, check_holes
-from cagepose.model.naming import check_names, names_of, placed
+from cagepose.model.hole import Hole
+from cagepose.model.naming import check_names, names_of, place_of
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import AnyShape, Shape
+from cagepose.model.spring import Spring
 from cagepose.model.wording import counted
 
 
 @dataclass(frozen=True, init=False, eq=False)
 class Cage:
-    """Fixed points and shapes in the world.
+    """Points and shapes in the world that stand still, and bodies of such that can be driven.
+
+    Points, names, shapes and holes are those of the whole cage as it is at the start: first what stands still, then
+    what is of each body, in their order.
 
     Attributes
     ----------
@@ -37,16 +43,23 @@ class Cage:
         What is cut out of them, and what stands alone; every one with a name.
     pose_world_cage
         Moves all points and shapes at once: the misaligned mechanism.
+    bodies
+        What can be driven, each in its own frame.
     shape_paths
-        For each of the shapes, then of the holes, where its numbers were given: ``("shapes", 2, "cylinder")``.
+        For each of the shapes, then of the holes, where its numbers were given: ``("shapes", 2, "cylinder")``, or
+        ``("bodies", "mate", "shapes", 0, "box")``.
+    standing
+        What stands still, alone.
     """
 
     points_cage: Annotated[FloatArray, (-1, 3)]
     names: tuple[str, ...]
-    pose_world_cage: Pose
     shapes: tuple[Box | AnyShape | Facets, ...]
     holes: tuple[Hole, ...]
+    pose_world_cage: Pose
+    bodies: tuple[CageBody, ...]
     shape_paths: tuple[tuple[Key, ...], ...]
+    standing: Elements
 
     def __init__(
         self,
@@ -55,48 +68,44 @@ class Cage:
         pose: Pose | None = None,
         shapes: Iterable[Shape] = (),
         holes: Iterable[Hole] = (),
+        bodies: Iterable[CageBody] = (),
     ) -> None:
         """
         Raises
         ------
         SceneError
-            Neither points nor shapes, points that are not n x 3 finite numbers, a name used twice, not one name for
-            each point, or a hole that is not in its shapes.
+            Neither points nor shapes nor bodies, points that are not n x 3 finite numbers, a name used twice, not one
+            name for each point, or a hole that is not in its shapes.
         """
-        has_points = not (isinstance(points, Sequence | np.ndarray) and len(points) == 0)
-        array = (
-            finite_array(points, (-1, 3), "points") if has_points else finite_array(np.zeros((0, 3)), (0, 3), "points")
-        )
-        default_names = tuple(f"C{index + 1}" for index in range(len(array)))
         problems = ProblemList()
-        given = default_names if names is None else check_kinds(names, str, "names", problems)
         pose = Pose() if pose is None else pose
         check_kind(pose, Pose, ("pose",), problems)
-        listed = {
-            "shapes": check_kinds(shapes, Shape, "shapes", problems),
-            "holes": check_kinds(holes, Hole, "holes", problems),
-        }
-        problems.raise_if_any()
-        paths, everything = placed(listed, lambda shape: isinstance(shape, Hole))
-        solids = tuple(shape for shape in everything if not isinstance(shape, Hole))
-        holes = tuple(shape for shape in everything if isinstance(shape, Hole))
-        if not has_points and not everything:
+        bodies = check_kinds(bodies, CageBody, "bodies", problems)
+        standing = elements_of(points, names, shapes, holes, problems)
+        every = (standing, *(body.in_cage() for body in bodies))
+        if all(found.is_empty for found in every):
             problems.add((), "has neither points nor shapes; give at least one of them")
-        if len(given) != len(array):
-            problems.add(("names",), f"holds {len(given)} names for {len(array)} points; give one for each")
-        for name, indices in duplicates(given).items():
-            problems.add(("points", name), f"is the name of {len(indices)} points; rename all but one")
-        places: list[tuple[Key, ...]] = [("points", name) for name in dict.fromkeys(given)]
-        places += [path[:2] for path in paths]
-        check_names([*dict.fromkeys(given), *names_of(everything)], places, problems)
-        check_holes(holes, paths[len(solids) :], solids, problems)
+        for name, indices in duplicates([body.name for body in bodies]).items():
+            problems.add(("bodies", name), f"is the name of {len(indices)} bodies; rename all but one")
         problems.raise_if_any()
-        object.__setattr__(self, "points_cage", array)
-        object.__setattr__(self, "names", given)
-        object.__setattr__(self, "pose_world_cage", pose)
-        object.__setattr__(self, "shapes", solids)
-        object.__setattr__(self, "holes", holes)
-        object.__setattr__(self, "shape_paths", paths)
+        of_shapes = (path for found in every for path in found.shape_paths)
+        of_holes = (path for found in every for path in found.hole_paths)
+        points = np.concatenate([found.points_m for found in every])
+        points.setflags(write=False)
+        for field, value in (
+            ("points_cage", points),
+            ("names", tuple(name for found in every for name in found.names)),
+            ("shapes", tuple(shape for found in every for shape in found.shapes)),
+            ("holes", tuple(hole for found in every for hole in found.holes)),
+            ("pose_world_cage", pose),
+            ("bodies", bodies),
+            ("shape_paths", (*of_shapes, *of_holes)),
+            ("standing", standing),
+        ):
+            object.__setattr__(self, field, value)
+        own_names, own_places = [body.name for body in bodies], [("bodies", body.name) for body in bodies]
+        check_names([*own_names, *self.element_names], [*own_places, *self.element_paths], problems)
+        problems.raise_if_any()
 
     def __repr__(self) -> str:
         return f"<Cage: {self._contents}>"
@@ -104,12 +113,28 @@ class Cage:
     @property
     def _contents(self) -> str:
         points, shapes = (len(self.names), "point", "points"), (len(self.shapes), "shape", "shapes")
-        return counted(points, shapes, (len(self.holes), "hole", "holes"))
+        holes, bodies = (len(self.holes), "hole", "holes"), (len(self.bodies), "body", "bodies")
+        return counted(points, shapes, holes, bodies)
 
     @cached_property
     def element_names(self) -> tuple[str, ...]:
         """The names of all points, then of all shapes, then of all holes."""
         return (*self.names, *names_of(self.shapes), *names_of(self.holes))
+
+    @cached_property
+    def element_bodies(self) -> tuple[int, ...]:
+        """Of which body each of `element_names` is: 0 stands still, k is of ``bodies[k - 1]``."""
+        every = (self.standing, *(body.own for body in self.bodies))
+        counts = [(len(found.names), len(found.shapes), len(found.holes)) for found in every]
+        return tuple(body for kind in range(3) for body, count in enumerate(counts) for _ in range(count[kind]))
+
+    @cached_property
+    def element_paths(self) -> tuple[tuple[Key, ...], ...]:
+        """Where each of `element_names` stands in the cage."""
+        bodies = self.element_bodies[: len(self.names)]
+        of_bodies: list[tuple[Key, ...]] = [(), *(("bodies", body.name) for body in self.bodies)]
+        points = ((*of_bodies[body], "points", name) for body, name in zip(bodies, self.names, strict=True))
+        return (*points, *map(place_of, self.shape_paths))
 
     def points_world(self) -> FloatArray:
         """The points in the world, (n, 3), metres."""
@@ -118,3 +143,10 @@ class Cage:
     def nodes_cage(self) -> FloatArray:
         """The points and those that tell where the shapes lie, in the cage's own frame, (n, 3), metres."""
         return np.concatenate([self.points_cage, *(shape.nodes_body() for shape in (*self.shapes, *self.holes))])
+
+    def spring_end_world(self, spring: Spring) -> FloatArray:
+        """Where a spring is held at the start, in the world, (3,), metres; the body it rides on is one of these."""
+        if spring.of is None:
+            return spring.to_m
+        (body,) = (body for body in self.bodies if body.name == spring.of)
+        return self.pose_world_cage.transform(body.pose_cage_body.transform(spring.to_m))

@@ -116,6 +116,7 @@ class ProblemList:
 
 FROM_THREE_NUMBERS = {
     "Box": "cagepose.Box({})",
+    "Drive": "cagepose.Drive(travel={})",
     "Force": "cagepose.Force({}, at_m=(0, 0, 0))",
     "Load": "cagepose.Load('weight', gravity={})",
     "Moment": "cagepose.Moment({}, magnitude_nm=1.0)",

@@ -56,15 +56,21 @@ def scene_geometry(held: Object, cage: Cage, touch_m: float) -> Geometry:
 
 
 def placed_bodies(cage: Cage, bodies: Bodies) -> Placing:
-    """Return the bodies of a cage in the world, in memory of their own."""
-    memory = empty_placing(bodies.own, len(bodies.first_nodes) - 1)
-    place_boundary(body_of(bodies, memory, 0), *cage.pose_world_cage.as_tuples())
+    """Return the bodies of a cage in the world, where they start, in memory of their own."""
+    n_bodies = len(bodies.first_nodes) - 1
+    memory = empty_placing(bodies.own, n_bodies)
+    for body in range(n_bodies):
+        place_boundary(body_of(bodies, memory, body), *cage.pose_world_cage.as_tuples())
     return memory
 
 
 def cage_bodies(cage: Cage, touch_m: float) -> Bodies:
-    """Return all parts of the cage, its points first, in its frame."""
-    return joined([_boundary((*cage.points_cage, *cage.shapes, *cage.holes), touch_m)])
+    """Return what of the cage stands still, then its bodies where they start, all in the frame of the cage. Parts have
+    the numbers of `Cage.element_names`.
+    """
+    elements, body_of_each = (*cage.points_cage, *cage.shapes, *cage.holes), np.array(cage.element_bodies)
+    numbers = [np.flatnonzero(body_of_each == body) for body in range(1 + len(cage.bodies))]
+    return joined([_boundary(tuple(elements[k] for k in own.tolist()), touch_m) for own in numbers], numbers)
 
 
 def _boundary(parts: tuple[Shape | FloatArray, ...], touch_m: float) -> Boundary:
@@ -87,7 +93,7 @@ class _Body:
     parts: tuple[Shape | FloatArray, ...] = field(compare=False)
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=16)
 def _boundary_of(body: _Body, touch_m: float) -> Boundary:
     return boundary_of(body.parts, touch_m)
 

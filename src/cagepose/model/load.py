@@ -1,8 +1,8 @@
-"""What pushes, turns and pulls it: `Force`, `Moment`, `Spring` and `Load`."""
+"""What acts in a phase: `Force`, `Moment` and `Load`; springs and drives stand beside it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
@@ -18,7 +18,9 @@ from cagepose.model.checks import (
     is_finite,
     unit_vector,
 )
-from cagepose.model.wording import coordinates, counted
+from cagepose.model.drive import Drive, drives_of
+from cagepose.model.spring import Spring
+from cagepose.model.wording import coordinates, counted, few
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -97,58 +99,9 @@ class Moment:
 
 
 @dataclass(frozen=True, init=False, eq=False)
-class Spring:
-    """A straight spring between a point of the object and a point of the world.
-
-    It pulls the object's point towards the other with the tension ``preload_n + stiffness_n_per_m * (length - length at
-    the object's start pose)``, and pushes where that is below zero.
-
-    Attributes
-    ----------
-    at_object_m
-        Where it holds the object, in the object's frame, (3,), metres. It need not lie on the object.
-    to_world_m
-        Where it is held itself, in the world, (3,), metres.
-    stiffness_n_per_m
-        Newtons for each metre, zero or more; zero: the tension is that of the preload, whatever the length.
-    preload_n
-        Tension at the object's start pose, newtons; below zero: it pushes.
-    """
-
-    at_object_m: FloatArray
-    to_world_m: FloatArray
-    stiffness_n_per_m: float
-    preload_n: float
-
-    def __init__(self, at_m: ArrayLike, to_m: ArrayLike, stiffness_n_per_m: float, preload_n: float = 0.0) -> None:
-        """
-        Raises
-        ------
-        SceneError
-            A wrong shape, NaN or infinite, a stiffness below zero, or neither stiffness nor preload.
-        """
-        problems = ProblemList()
-        if not (is_finite(stiffness_n_per_m) and stiffness_n_per_m >= 0.0):
-            problems.add(("stiffness",), f"is {stiffness_n_per_m!r}; give a finite number, zero or above")
-        if not is_finite(preload_n):
-            problems.add(("preload",), f"is {preload_n!r}; give a finite number")
-        if not problems.problems and stiffness_n_per_m == 0.0 and preload_n == 0.0:
-            problems.add(("stiffness",), "is zero without a preload, so the spring does nothing; give one of them")
-        problems.raise_if_any()
-        _set_field(self, "at_object_m", finite_array(at_m, (3,), "at"))
-        _set_field(self, "to_world_m", finite_array(to_m, (3,), "to"))
-        _set_field(self, "stiffness_n_per_m", float(stiffness_n_per_m))
-        _set_field(self, "preload_n", float(preload_n))
-
-    def __repr__(self) -> str:
-        preload = f", preload {self.preload_n:.6g} N" if self.preload_n else ""
-        ends = f"{coordinates(self.at_object_m)} m to {coordinates(self.to_world_m)} m"
-        return f"<Spring {ends}: {self.stiffness_n_per_m:.6g} N/m{preload}>"
-
-
-@dataclass(frozen=True, init=False, eq=False)
 class Load:
-    """One phase of a run: gravity, forces, moments and springs, at least one of them. A phase without gravity has none.
+    """One phase of a run: gravity, forces, moments, springs, and bodies of the cage that are driven, at least one of
+    these. A phase without gravity has none.
 
     Attributes
     ----------
@@ -162,6 +115,12 @@ class Load:
         Several pushes.
     moments, springs
         What else acts.
+    drive
+        The legs of each body that is driven, one after the other, by its name; all bodies move together. Empty: none is
+        driven.
+    stop_at
+        At which force of the drive, newtons along the travel, or moment, newton metres about the axis where all legs
+        are turns alone, it stops. None: it has no limit.
     pushes
         All forces, whether one or several.
     """
@@ -172,6 +131,8 @@ class Load:
     forces: tuple[Force, ...]
     moments: tuple[Moment, ...]
     springs: tuple[Spring, ...]
+    drive: dict[str, tuple[Drive, ...]]
+    stop_at: float | None
     pushes: tuple[Force, ...]
 
     def __init__(
@@ -183,13 +144,16 @@ class Load:
         forces: Iterable[Force] = (),
         moments: Iterable[Moment] = (),
         springs: Iterable[Spring] = (),
+        drive: Mapping[str, Drive | Sequence[Drive]] | None = None,
+        stop_at: float | None = None,
     ) -> None:
         """
         Raises
         ------
         SceneError
-            Nothing that acts, a zero gravity, both ``force`` and ``forces``, arguments of other classes, or a force
-            without a magnitude beside other forces, moments or springs.
+            Nothing that acts, a zero gravity, both ``force`` and ``forces``, arguments of other classes, a force
+            without a magnitude beside other forces, moments, springs or a limit, a body without legs, or a limit that
+            is not above zero, without a drive, or of travels and turns at once.
         """
         problems = ProblemList()
         check_text(name, ("name",), problems)
@@ -200,20 +164,24 @@ class Load:
         _set_field(self, "forces", check_kinds(forces, Force, "forces", problems))
         _set_field(self, "moments", check_kinds(moments, Moment, "moments", problems))
         _set_field(self, "springs", check_kinds(springs, Spring, "springs", problems))
+        _set_field(self, "drive", drives_of(drive, problems))
+        _set_field(self, "stop_at", stop_at)
         _set_field(self, "pushes", self.forces if force is None else (force,))
         if force is not None and self.forces:
             problems.add(("forces",), "stands beside force; put all of them into forces")
         problems.raise_if_any()
+        self._check_limit(problems)
         if gravity is None and self.is_weight_alone:
-            raise SceneError(
-                [Problem((), "has neither gravity nor a force, a moment or a spring; give at least one of them")]
-            )
+            nothing = "has neither gravity nor a force, a moment, a spring or a drive; give at least one of them"
+            raise SceneError([*problems.problems, Problem((), nothing)])
         if gravity is not None:
             unit_vector(gravity, "gravity")
         for index, push in enumerate(self.pushes):
             if push.magnitude_n is None and self.needs_newtons:
                 place = ("force",) if force is not None else ("forces", index)
-                problems.add((*place, "magnitude"), "is missing, and other loads act beside this force; give newtons")
+                is_alone = len(self.pushes) == 1 and not self.moments and not self.springs
+                beside = "the drive has a limit" if is_alone else "other loads act beside this force"
+                problems.add((*place, "magnitude"), f"is missing, and {beside}; give newtons")
         problems.raise_if_any()
         _set_field(self, "gravity_world", None if gravity is None else finite_array(gravity, (3,), "gravity"))
 
@@ -224,17 +192,38 @@ class Load:
             (len(self.moments), "moment", "moments"),
             (len(self.springs), "spring", "springs"),
         )
-        return f"<Load {self.name!r}: {', '.join(part for part in (gravity, counts) if part)}>"
+        driven = f"drives {few(self.drive)}" if self.drive else ""
+        return f"<Load {self.name!r}: {', '.join(part for part in (gravity, counts, driven) if part)}>"
+
+    def _check_limit(self, problems: ProblemList) -> None:
+        if self.stop_at is None:
+            return
+        if not (is_finite(self.stop_at) and self.stop_at > 0.0):
+            problems.add(("stop_at",), f"is {self.stop_at!r}; give a finite number above zero")
+        elif not self.drive:
+            problems.add(("stop_at",), "stands without a drive; leave it out, or drive a body of the cage")
+        elif len({leg.is_turn for legs in self.drive.values() for leg in legs}) == 2:
+            message = "is of travels and of turns alone, and newtons are no newton metres; leave it out, or give them"
+            problems.add(("stop_at",), f"{message} phases of their own")
+        else:
+            _set_field(self, "stop_at", float(self.stop_at))
 
     @property
     def is_weight_alone(self) -> bool:
-        """Whether nothing but gravity acts."""
-        return not (self.pushes or self.moments or self.springs)
+        """Whether nothing but gravity acts, and nothing is driven."""
+        return not (self.pushes or self.moments or self.springs or self.drive)
+
+    @property
+    def stops_at_moment(self) -> bool:
+        """Whether `stop_at` is a moment, as all legs are turns alone."""
+        return all(leg.is_turn for legs in self.drive.values() for leg in legs)
 
     @property
     def needs_newtons(self) -> bool:
-        """Whether its parts only make sense together if all of them are in newtons: all but gravity and one force."""
-        return len(self.pushes) > 1 or bool(self.moments) or bool(self.springs)
+        """Whether its parts only make sense together if all of them are in newtons: all but gravity, one force and a
+        drive without a limit.
+        """
+        return len(self.pushes) > 1 or bool(self.moments) or bool(self.springs) or self.stop_at is not None
 
 
 _set_field = object.__setattr__

@@ -26,10 +26,12 @@ from cagepose.model.checks import (
     duplicates,
     is_finite,
 )
+from cagepose.model.driven import check_driven
 from cagepose.model.geometry import boxes_and_points, has_shapes, object_seams, scene_geometry, scene_size
 from cagepose.model.hole import Hole
 from cagepose.model.load import Load
 from cagepose.model.methods import METHODS, Metric
+from cagepose.model.naming import place_of
 from cagepose.model.parts import Object
 from cagepose.model.seams import Seams
 from cagepose.model.shapes import Shape
@@ -128,8 +130,8 @@ class Scene:
         SceneError
             Arguments of other classes, no loads, a phase name used twice, a negative friction coefficient, or one of
             what is neither in the cage nor in the object, cage points on top of each other, a cage point inside a box
-            of the object at the start, a start too far from the cage, or a box or shape thinner than what the touch
-            tolerance can tell apart.
+            of the object at the start, a start too far from the cage, a box or shape thinner than what the touch
+            tolerance can tell apart, or a drive or a spring of a body that the cage does not have.
         """
         tolerances = Tolerances() if tolerances is None else tolerances
         problems = ProblemList()
@@ -166,7 +168,8 @@ class Scene:
             _check_shapes_apart(object, cage, geometry, problems)
         else:
             _check_points_outside(object, cage, boxes, touch_m, size_m, problems)
-        _check_loads(object, loads, touch_m, problems)
+        check_driven(cage, loads, problems)
+        _check_loads(object, cage, loads, touch_m, problems)
         problems.raise_if_any()
         named = object.boxes
         for field, value in (
@@ -285,12 +288,12 @@ def _check_thickness(held: Object, cage: Cage, touch_m: float, problems: Problem
 
 
 def _check_points_apart(cage: Cage, touch_m: float, problems: ProblemList) -> None:
-    """Tell of each point that lies on another one, once, however many lie there.
+    """Tell of each point that lies on another one of its body, once, however many lie there.
 
     Points are sorted along one line and compared with their neighbours on it, so that thousands stay cheap. One that is
     to be removed is compared no more: n points at one place are n comparisons and n problems, not n^2.
     """
-    points, names = cage.points_cage, cage.names
+    points, names, bodies = cage.points_cage, cage.names, cage.element_bodies
     if not names:
         return
     along = (points - points[0]) @ ASKEW
@@ -299,11 +302,13 @@ def _check_points_apart(cage: Cage, touch_m: float, problems: ProblemList) -> No
     is_told = [False] * len(order)
     for place, first in enumerate(order):
         for second in order[place + 1 : near[place]] if not is_told[first] else ():
-            if is_told[second] or (distance := math.dist(points[first], points[second])) > touch_m:
+            if is_told[second] or bodies[first] != bodies[second]:
+                continue
+            if (distance := math.dist(points[first], points[second])) > touch_m:
                 continue
             one, other = sorted((first, second))
             problems.add(
-                ("cage", "points", names[other]),
+                ("cage", *cage.element_paths[other]),
                 f"lies {millimetres(distance)} from {names[one]}, so they are one point; remove or move one",
             )
             is_told[other] = True
@@ -331,14 +336,14 @@ def _check_points_outside(
     for point_index in np.nonzero(depths > touch_m)[0].tolist():
         box = int(deepest[point_index])
         if box < len(held.boxes):
-            path = key_path(("object", *held.part_paths[box][:2]))
+            path = key_path(("object", *place_of(held.part_paths[box])))
             where = f"starts {millimetres(depths[point_index])} inside {path} ({held.boxes[box].name})"
         else:
             where = "starts in the seam between two boxes that meet flush, so inside the object"
         remedy = "move the point out or move the object's start pose"
         if depths[point_index] <= TOUCH_GREATEST * size_m:
             remedy = "move the point out, move the object's start pose, or raise tolerances.touch"
-        problems.add(("cage", "points", cage.names[point_index]), f"{where}; {remedy}")
+        problems.add(("cage", *cage.element_paths[point_index]), f"{where}; {remedy}")
 
 
 def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: ProblemList) -> None:
@@ -353,12 +358,11 @@ def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: 
         return
     one = _solid_of(held.holes, held.element_names, geometry.held.features[feature].part)
     other = _solid_of(cage.holes, cage.element_names, geometry.cage.own.features[cage_feature].part)
-    part, n_points = key_path(("object", *held.part_paths[one][:2])), len(cage.names)
-    is_point = other < n_points
-    path: tuple[Key, ...] = ("points", cage.names[other]) if is_point else cage.shape_paths[other - n_points][:2]
+    part = key_path(("object", *place_of(held.part_paths[one])))
+    is_point = other < len(cage.names)
     what, remedy = ("", "move the point") if is_point else (f"{cage.element_names[other]} ", "move it")
     problems.add(
-        ("cage", *path),
+        ("cage", *cage.element_paths[other]),
         f"{what}starts {millimetres(depth_m)} inside {part} ({held.element_names[one]}); {remedy} out or move the"
         " object's start pose",
     )
@@ -372,7 +376,8 @@ def _solid_of(holes: Sequence[Hole], names: Sequence[str], which: int) -> int:
     return names.index(holes[which - first_hole].in_[0])
 
 
-def _check_loads(held: Object, loads: tuple[Load, ...], touch_m: float, problems: ProblemList) -> None:
+def _check_loads(held: Object, cage: Cage, loads: tuple[Load, ...], touch_m: float, problems: ProblemList) -> None:
+    known = {None, *(body.name for body in cage.bodies)}
     for index, load in enumerate(loads):
         if load.needs_newtons and load.gravity_world is not None and held.mass_kg is None:
             problems.add(
@@ -381,7 +386,7 @@ def _check_loads(held: Object, loads: tuple[Load, ...], touch_m: float, problems
             )
         for number, spring in enumerate(load.springs):
             at = held.pose_world_object.transform(spring.at_object_m)
-            if float(np.linalg.norm(spring.to_world_m - at)) <= touch_m:
+            if spring.of in known and float(np.linalg.norm(cage.spring_end_world(spring) - at)) <= touch_m:
                 problems.add(
                     ("loads", index, "springs", number, "to"),
                     "lies where the spring holds the object at the start, so it has no direction; move to or at",

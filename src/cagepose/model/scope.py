@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import NamedTuple
 
 from cagepose.errors import Key, Problem, SceneError
 from cagepose.model.beside_facets import meets_facets
-from cagepose.model.box import Box
-from cagepose.model.cage import Cage
 from cagepose.model.hole import Hole
-from cagepose.model.parts import Object
+from cagepose.model.naming import place_of
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Shape
 
@@ -17,9 +16,7 @@ from cagepose.model.shapes import Shape
 def unknown_shapes(scene: Scene) -> list[Problem]:
     """Return a problem for each hole that no method runs, and for each round part that meets facets of its body."""
     found = []
-    for path, shape in _placed(scene):
-        body: Object | Cage = scene.object if path[0] == "object" else scene.cage
-        every = (*_boxes_of(body), *body.shapes)
+    for path, shape, every in _placed(scene):
         if met := meets_facets(shape, every):
             there = (
                 f"is a {shape.kind} ({shape.name}) that touches or overlaps {met}, a mesh of facets of the same body"
@@ -45,10 +42,6 @@ def _unknown_in(hole: Hole, solids: tuple[Shape, ...]) -> str | None:
     return None
 
 
-def _boxes_of(body: Object | Cage) -> tuple[Box, ...]:
-    return body.boxes if isinstance(body, Object) else ()
-
-
 def other_shapes(scene: Scene, needs: str) -> list[Problem]:
     """Return a problem that names the first shape of a scene that is neither a box of the object nor a cage point.
 
@@ -56,7 +49,7 @@ def other_shapes(scene: Scene, needs: str) -> list[Problem]:
     """
     others = _placed(scene)[len(scene.object.boxes) :]
     more = f", like {len(others) - 1} more" if len(others) > 1 else ""
-    return [Problem(path, f"is a {shape.kind} ({shape.name}){more}, and {needs}") for path, shape in others[:1]]
+    return [Problem(path, f"is a {shape.kind} ({shape.name}){more}, and {needs}") for path, shape, _ in others[:1]]
 
 
 def check_boxes_and_points(scene: Scene, what: str) -> None:
@@ -71,10 +64,23 @@ def check_boxes_and_points(scene: Scene, what: str) -> None:
         raise SceneError(problems)
 
 
-def _placed(scene: Scene) -> list[tuple[tuple[Key, ...], Shape]]:
-    """Return all shapes of a scene, the boxes of the object first, and where each of them was given."""
+class _Placed(NamedTuple):
+    """A shape or hole of a scene: where it was given, and the shapes of its body."""
+
+    path: tuple[Key, ...]
+    shape: Shape
+    beside: tuple[Shape, ...]
+
+
+def _placed(scene: Scene) -> list[_Placed]:
+    """Return all shapes of a scene, the boxes of the object first."""
     held, cage = scene.object, scene.cage
     of_object = zip(held.part_paths, (*held.parts, *held.holes), strict=True)
-    of_cage = zip(cage.shape_paths, (*cage.shapes, *cage.holes), strict=True)
-    found: list[tuple[tuple[Key, ...], Shape]] = [(("object", *path[:2]), shape) for path, shape in of_object]
-    return found + [(("cage", *path[:2]), shape) for path, shape in of_cage]
+    found = [_Placed(("object", *place_of(path)), shape, held.parts) for path, shape in of_object]
+    bodies, paths = cage.element_bodies[len(cage.names) :], cage.element_paths[len(cage.names) :]
+    beside = [
+        tuple(shape for shape, of in zip(cage.shapes, bodies, strict=False) if of == body)
+        for body in range(1 + len(cage.bodies))
+    ]
+    of_cage = zip(paths, (*cage.shapes, *cage.holes), bodies, strict=True)
+    return found + [_Placed(("cage", *path), shape, beside[body]) for path, shape, body in of_cage]

@@ -19,9 +19,10 @@ from cagepose.kernels.contact.loads import (
 )
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.geometry import cage_bodies
-from cagepose.model.load import Load, Spring
+from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.model.spring import Spring
 from cagepose.runs.load_scaling import one_force, scaled_load
 from cagepose.runs.tolerances import TENSION_AT_ZERO
 
@@ -33,19 +34,20 @@ class Wrench(NamedTuple):
     moment: FloatArray
 
 
-def actions_of(scene: Scene) -> np.ndarray:
+def actions_of(scene: Scene, displaced: FloatArray | None = None) -> np.ndarray:
     """Return what acts in each phase, (n_phases, n_actions): the weight, forces, moments and springs, then such as do
-    nothing.
+    nothing. ``displaced``, (n_bodies, 7), says where the bodies that springs ride on are, if not where they start.
     """
-    of_phases = [_actions_of_phase(scene, load) for load in scene.loads]
+    of_phases = [_actions_of_phase(scene, load, displaced) for load in scene.loads]
     found = np.zeros((len(of_phases), max(map(len, of_phases))), dtype_of(Action))
     for index, actions in enumerate(of_phases):
         found[index, : len(actions)] = actions
     return found
 
 
-def _actions_of_phase(scene: Scene, load: Load) -> np.ndarray:
+def _actions_of_phase(scene: Scene, load: Load, displaced: FloatArray | None = None) -> np.ndarray:
     center, start = scene.object.center_of_gravity_m, scene.object.pose_world_object
+    cage = scene.cage.pose_world_cage
     weighed = scaled_load(scene, load)
     pushes = acting_pushes(load, weighed.forces)
     found = np.zeros(1 + len(pushes) + len(load.moments) + len(load.springs), dtype_of(Action))
@@ -59,12 +61,25 @@ def _actions_of_phase(scene: Scene, load: Load) -> np.ndarray:
     for index, spring in enumerate(load.springs, start=len(found) - len(load.springs)):
         found["kind"][index] = SPRING
         found["arm_object"][index] = spring.at_object_m - center
-        found["anchor"][index] = spring.to_world_m - cage_middle(scene)
+        ends = spring_ends(scene, spring, cage.position_m[None], cage.quaternion_wxyz[None])
+        found["body"][index] = body = body_numbers(scene).get(spring.of, 0)
+        end = ends[0] if displaced is None or body == 0 else _moved(cage, ends[0], displaced[body])
+        found["anchor"][index] = end - cage_middle(scene)
         found["stiffness"][index] = spring.stiffness_n_per_m
-        found["tension_at_zero"][index] = tensions_at_zero(spring, start.position_m[None], start.quaternion_wxyz[None])[
-            0
-        ]
+        found["tension_at_zero"][index] = tensions_at_zero(
+            spring, ends, start.position_m[None], start.quaternion_wxyz[None]
+        )[0]
     return found
+
+
+def _moved(cage: Pose, place_world: FloatArray, displaced: FloatArray) -> FloatArray:
+    """Return where a place of a body is in the world, (3,), after the body was displaced in the cage's frame, (7,)."""
+    return (cage @ Pose(displaced[:3], displaced[3:])).transform(cage.inverse_transform(place_world))
+
+
+def body_numbers(scene: Scene) -> dict[str | None, int]:
+    """Return the numbers of the bodies of a cage, by name, as kernels count them: what stands still is 0."""
+    return {body.name: number for number, body in enumerate(scene.cage.bodies, start=1)}
 
 
 class Push(NamedTuple):
@@ -90,7 +105,9 @@ def acting_pushes(load: Load, forces: FloatArray) -> list[Push]:
 
 
 def is_one_force(scene: Scene, load: Load) -> bool:
-    """Whether besides its weight a phase has at most one dead force, or such as one is equal to."""
+    """Whether besides its weight a phase has at most one dead force, or such as one is equal to, and drives nothing."""
+    if load.drive:
+        return False
     if not load.forces and not load.moments and not load.springs:
         return load.force is None or not load.force.follows
     if load.moments or load.springs or any(push.follows for push in load.pushes):
@@ -98,12 +115,26 @@ def is_one_force(scene: Scene, load: Load) -> bool:
     return len(load.pushes) < 2 or len(acting_pushes(load, scaled_load(scene, load).forces)) == 1
 
 
-def tensions_at_zero(spring: Spring, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:
-    """Return the tension that a spring would have if its ends met, newtons, (n,), for objects that start at poses,
-    (n, 3) and (n, 4). Number by number, so that a row has the same bits as alone.
+def spring_ends(scene: Scene, spring: Spring, positions_m: FloatArray, quaternions: FloatArray) -> FloatArray:
+    """Return where a spring is held at the start, in the world, (n, 3), metres, of cages at poses, (n, 3) and (n, 4);
+    one row for all where it rides on no body. Number by number, as below.
+    """
+    if spring.of is None:
+        return spring.to_m[None]
+    (body,) = (body for body in scene.cage.bodies if body.name == spring.of)
+    turned = _turned(quaternions, *body.pose_cage_body.transform(spring.to_m))
+    ends: FloatArray = positions_m + np.stack(turned, axis=1)
+    return ends
+
+
+def tensions_at_zero(
+    spring: Spring, ends_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray
+) -> FloatArray:
+    """Return the tension that a spring would have if its ends met, newtons, (n,), held at ``ends_m``, (n, 3), for
+    objects that start at poses, (n, 3) and (n, 4). Number by number, so that a row has the same bits as alone.
     """
     turned = _turned(quaternions, *spring.at_object_m)
-    ways = [spring.to_world_m[axis] - (positions_m[:, axis] + turned[axis]) for axis in range(3)]
+    ways = [ends_m[:, axis] - (positions_m[:, axis] + turned[axis]) for axis in range(3)]
     pulls = spring.stiffness_n_per_m * np.sqrt(ways[0] * ways[0] + ways[1] * ways[1] + ways[2] * ways[2])
     tensions = spring.preload_n - pulls
     is_rounding = np.abs(tensions) <= TENSION_AT_ZERO * (abs(spring.preload_n) + pulls)
@@ -112,7 +143,7 @@ def tensions_at_zero(spring: Spring, positions_m: FloatArray, quaternions: Float
 
 
 def cage_middle(scene: Scene) -> FloatArray:
-    """Return the middle of the cage's points, shapes and holes in the world, (3,), metres."""
+    """Return the middle of all points, shapes and holes of the cage that stand still, in the world, (3,), metres."""
     points, pose = scene.cage.points_cage, scene.cage.pose_world_cage
     found: FloatArray = cage_middles(scene, points[None], pose.position_m[None], pose.quaternion_wxyz[None])[0]
     return found
@@ -121,16 +152,19 @@ def cage_middle(scene: Scene) -> FloatArray:
 def cage_middles(
     scene: Scene, points_cage_m: FloatArray, positions_m: FloatArray, quaternions: FloatArray
 ) -> FloatArray:
-    """Return the middles of cages in the world, (n, 3), metres, from which kernels see all positions.
+    """Return the middles of cages in the world, (n, 3), metres, from which kernels see all positions: those of what
+    stands still, or the origins of their frames where all is of bodies.
 
     Points are (n, n_points, 3), poses (n, 3) and (n, 4), each also one row for all; the shapes are those of the scene,
     and their middles are the kernels' own (`cagepose.kernels.outcome.cases.start_of`). Number by number, as below.
     """
     n_points = points_cage_m.shape[1]
     parts = np.asarray(cage_bodies(scene.cage, scene.touch_m).own.parts)
-    shapes = parts["middle"][parts["body"] == 0][n_points:]
-    places = np.concatenate([points_cage_m, np.repeat(shapes[None], len(points_cage_m), axis=0)], axis=1)
-    middles = places.cumsum(axis=1)[:, -1] / places.shape[1]
+    stands = parts["body"] == 0
+    shapes = parts["middle"][n_points:][stands[n_points:]]
+    points = points_cage_m[:, stands[:n_points]]
+    places = np.concatenate([points, np.repeat(shapes[None], len(points), axis=0)], axis=1)
+    middles = places.cumsum(axis=1)[:, -1] / places.shape[1] if stands.any() else np.zeros((len(points), 3))
     found: FloatArray = positions_m + np.stack(_turned(quaternions, *middles.T), axis=1)
     return found
 
@@ -146,21 +180,21 @@ def _turned(quaternions: FloatArray, x: FloatArray, y: FloatArray, z: FloatArray
     )
 
 
-def load_size(scene: Scene, phase: int, pose: Pose) -> float:
+def load_size(scene: Scene, phase: int, pose: Pose, displaced: FloatArray | None = None) -> float:
     """Return the lengths of all that acts in a phase while the object is at a pose, added up: of weight and forces, of
-    what the springs' tensions are made of, and the moments over the scene's size.
+    what the springs' tensions are made of, and the moments over the scene's size. ``displaced`` as for `actions_of`.
     """
     center = pose.transform(scene.object.center_of_gravity_m) - cage_middle(scene)
     return total_load(
-        _actions_of_phase(scene, scene.loads[phase]), as_vector(center), pose.as_tuples()[1], scene.size_m
+        _actions_of_phase(scene, scene.loads[phase], displaced), as_vector(center), pose.as_tuples()[1], scene.size_m
     )
 
 
-def wrench_at(scene: Scene, phase: int, pose: Pose) -> Wrench:
-    """Return the sum of all that acts in a phase while the object is at a pose."""
+def wrench_at(scene: Scene, phase: int, pose: Pose, displaced: FloatArray | None = None) -> Wrench:
+    """Return the sum of all that acts in a phase while the object is at a pose; ``displaced`` as for `actions_of`."""
     center = pose.transform(scene.object.center_of_gravity_m) - cage_middle(scene)
     force, moment = np.zeros(3), np.zeros(3)
-    for action in _actions_of_phase(scene, scene.loads[phase]):
+    for action in _actions_of_phase(scene, scene.loads[phase], displaced):
         one = acting(action, as_vector(center), pose.as_tuples()[1])
         force += one.share * np.array(one.force)
         moment += one.share * np.array(one.moment)

@@ -18,7 +18,7 @@ from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.geometry import sizes_with_points
 from cagepose.model.pose import Pose, quaternions_of
 from cagepose.model.scene import FARTHEST_START, Scene
-from cagepose.runs.actions import actions_of, cage_middles, tensions_at_zero
+from cagepose.runs.actions import actions_of, cage_middles, spring_ends, tensions_at_zero
 from cagepose.runs.cases import cases_of, part_of
 from cagepose.runs.load_scaling import scaled_pushes
 from cagepose.runs.methods import Method
@@ -85,6 +85,8 @@ def varied_cases(scene: Scene, friction: float, columns: dict[str, FloatArray]) 
         _quaternions(columns.get("cage_euler_zyx"), scene.cage.pose_world_cage),
         points,
         base.bodies_cage,
+        base.displaced,
+        base.drives,
         _owned(columns.get("object_position_m", base.object_positions)),
         _quaternions(columns.get("object_euler_zyx"), scene.object.pose_world_object),
         sizes_with_points(scene.object, scene.cage, points) if "points_cage_m" in columns else base.sizes_m,
@@ -139,16 +141,13 @@ def _vary_springs(scene: Scene, columns: dict[str, FloatArray], actions: np.ndar
     seen from the middle of the cage.
     """
     start, cage = scene.object.pose_world_object, scene.cage.pose_world_cage
-    middles = cage_middles(
-        scene,
-        columns.get("points_cage_m", scene.cage.points_cage[None]),
-        columns.get("cage_position_m", cage.position_m[None]),
-        _quaternions(columns.get("cage_euler_zyx"), cage),
-    )
+    of_cage = columns.get("cage_position_m", cage.position_m[None]), _quaternions(columns.get("cage_euler_zyx"), cage)
+    middles = cage_middles(scene, columns.get("points_cage_m", scene.cage.points_cage[None]), *of_cage)
     positions = columns.get("object_position_m", start.position_m[None])
     quaternions = _quaternions(columns.get("object_euler_zyx"), start)
     for place, load in enumerate(scene.loads):
         springs = np.flatnonzero(actions["kind"][0, place] == SPRING)
         for column, spring in zip(springs, load.springs, strict=True):
-            actions["anchor"][:, place, column] = spring.to_world_m - middles
-            actions["tension_at_zero"][:, place, column] = tensions_at_zero(spring, positions, quaternions)
+            ends = spring_ends(scene, spring, *of_cage)
+            actions["anchor"][:, place, column] = ends - middles
+            actions["tension_at_zero"][:, place, column] = tensions_at_zero(spring, ends, positions, quaternions)

@@ -23,6 +23,7 @@ from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.actions import actions_of
+from cagepose.runs.drives import at_start, drives_of
 from cagepose.runs.tolerances import LEAST_RADIUS_OF_GYRATION
 
 
@@ -56,21 +57,25 @@ def body_of(scene: Scene) -> Body:
     return body
 
 
-def cases_of(scene: Scene, friction: float, start: Pose | None = None) -> Cases:
-    """Return a scene as a case of one; ``start`` stands in the place of the object's own start pose."""
+def cases_of(scene: Scene, friction: float, start: Pose | None = None, displaced: FloatArray | None = None) -> Cases:
+    """Return a scene as a case of one; ``start`` stands in the place of the object's own start pose, and ``displaced``,
+    (n_bodies, 7), says where the bodies of the cage and the springs on them are, if not where the scene has them.
+    """
     cage, held = scene.cage.pose_world_cage, start or scene.object.pose_world_object
     return Cases(
         cage.position_m[None],
         cage.quaternion_wxyz[None],
         scene.cage.points_cage[None],
         cage_bodies(scene.cage, scene.touch_m),
+        at_start(scene) if displaced is None else displaced,
+        drives_of(scene),
         held.position_m[None],
         held.quaternion_wxyz[None],
         np.array([scene.size_m]),
         np.array([friction]),
         _own_frictions(scene, scene.cage.element_names),
         _own_frictions(scene, scene.object.element_names),
-        cast(Rows[Rows[PhaseLoad]], actions_of(scene)[None]),
+        cast(Rows[Rows[PhaseLoad]], actions_of(scene, displaced)[None]),
         kernel_tolerances(1.0, scene.tolerances.touch),
     )
 

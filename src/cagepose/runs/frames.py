@@ -23,6 +23,8 @@ CONTACT_COLUMNS = (
     "force_unit",
 )  # fmt: skip
 """A run without contacts has these columns, too."""
+DRIVE_COLUMNS = ("phase", "share", "along", *POSITION, *ANGLES)
+"""A run that drives nothing has these, too."""
 NOWHERE = np.full(3, np.nan)
 
 
@@ -58,6 +60,23 @@ def contact_columns(scene: Scene, phases: Sequence[PhaseRun]) -> dict[str, list[
     return {key: [row[key] for row in rows] for key in CONTACT_COLUMNS}
 
 
+def drive_columns(phases: Sequence[PhaseRun]) -> dict[str, list[object]]:
+    """Return a row for each place that was asked along the drive of each phase."""
+    rows = [
+        {
+            "phase": phase.name,
+            "share": share,
+            "along": along,
+            **dict(zip(POSITION, pose.position_m.tolist(), strict=True)),
+            **dict(zip(ANGLES, pose.euler_zyx, strict=True)),
+        }
+        for phase in phases
+        if phase.drive is not None
+        for share, along, pose in phase.drive.curve.places()
+    ]
+    return {key: [row[key] for row in rows] for key in DRIVE_COLUMNS}
+
+
 def _event(phase: PhaseRun, number: int, event: Event) -> dict[str, object]:
     motion, pose = event.motion, event.pose_world_object
     along = None if motion is None else motion.direction_world if motion.axis_world is None else motion.axis_world
@@ -73,6 +92,7 @@ def _event(phase: PhaseRun, number: int, event: Event) -> dict[str, object]:
         **dict(zip(ANGLES, pose.euler_zyx, strict=True)),
         "hit": event.hit,
         "contacts": event.contacts,
+        "share": np.nan if phase.drive is None else event.share,
         "verdict": phase.verdict if event is phase.events[-1] else "",
     }
 

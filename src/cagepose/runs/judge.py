@@ -6,6 +6,7 @@ from cagepose.kernels.boundary.geometry import PlacedCage, empty_cage
 from cagepose.kernels.outcome import at_pose
 from cagepose.kernels.outcome.records import Outcome, empty_outcome
 from cagepose.kernels.stability.proof import ProofWorkspace, empty_proof_workspace
+from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.cases import cases_of, part_of
@@ -14,21 +15,27 @@ from cagepose.runs.run import Contact
 from cagepose.runs.solved import judged, written
 
 
-def judge_pose(scene: Scene, pose: Pose, phase: int, friction: float) -> tuple[Proof, tuple[Contact, ...]]:
-    """Return the proof at a pose under the load of a phase, and the contacts with their forces.
+def judge_pose(
+    scene: Scene, pose: Pose, phase: int, friction: float, displaced: FloatArray | None = None
+) -> tuple[Proof, tuple[Contact, ...]]:
+    """Return the proof at a pose under the load of a phase, and the contacts with their forces. The bodies of the cage
+    stand still, displaced as for `cases_of`.
 
     Raises
     ------
     IndexError
         The scene has no such phase.
     """
-    _, outcome = judged_workspace(scene, pose, phase, friction)
+    _, outcome = judged_workspace(scene, pose, phase, friction, displaced)
     contacts, proofs = judged(scene, written(outcome), [pose] * (phase + 1))
     return proofs[phase], tuple(contacts[phase])
 
 
-def judged_workspace(scene: Scene, pose: Pose, phase: int, friction: float) -> tuple[ProofWorkspace, Outcome]:
-    """Judge a pose under the load of a phase; return the memory of that as the kernel has left it, and what it wrote.
+def judged_workspace(
+    scene: Scene, pose: Pose, phase: int, friction: float, displaced: FloatArray | None = None
+) -> tuple[ProofWorkspace, Outcome]:
+    """Judge a pose under the load of a phase, as `judge_pose`; return the memory of that as the kernel has left it, and
+    what it wrote.
 
     Raises
     ------
@@ -37,15 +44,19 @@ def judged_workspace(scene: Scene, pose: Pose, phase: int, friction: float) -> t
     """
     cage, at = _cage(scene, phase), empty_proof_workspace(scene.geometry)
     outcome = empty_outcome(scene.geometry, len(scene.loads), 1, 0)
-    at_pose.judge_start(phase, part_of(scene), cases_of(scene, friction, pose), cage, at, outcome)
+    cases = cases_of(scene, friction, pose, displaced)
+    outcome.displaced[:] = cases.displaced
+    at_pose.judge_start(phase, part_of(scene), cases, cage, at, outcome)
     return at, outcome
 
 
-def critical_friction_at(scene: Scene, pose: Pose, phase: int, friction: float) -> float:
+def critical_friction_at(
+    scene: Scene, pose: Pose, phase: int, friction: float, displaced: FloatArray | None = None
+) -> float:
     """Return the least coefficient of friction at which the contacts balance the load of a phase (5.17); inf: none.
 
     Where points or boxes have coefficients of their own, the greatest of all, with all in proportion to what they are
-    beside ``friction``.
+    beside ``friction``. Bodies as for `judge_pose`.
 
     Raises
     ------
@@ -54,7 +65,7 @@ def critical_friction_at(scene: Scene, pose: Pose, phase: int, friction: float) 
     """
     cage = _cage(scene, phase)
     return at_pose.critical_friction(
-        phase, part_of(scene), cases_of(scene, friction, pose), cage, empty_proof_workspace(scene.geometry)
+        phase, part_of(scene), cases_of(scene, friction, pose, displaced), cage, empty_proof_workspace(scene.geometry)
     )
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from cagepose.errors import Problem, SceneError
+from cagepose.kernels.driven import run as quasistatic_kernels
 from cagepose.kernels.native.kernel import Entry
-from cagepose.kernels.quasistatic import run as quasistatic_kernels
 from cagepose.kernels.quasistatic.step import RULE_NAMES
 from cagepose.kernels.stepwise import run as stepwise_kernels
 from cagepose.model.checks import expect, expect_choice
@@ -130,7 +130,15 @@ def chosen_method(scene: Scene, method: str | None = None) -> Method:
                 f" {DEFAULT_METHOD}",
             )
             for index, load in enumerate(scene.loads)
-            if not is_one_force(scene, load)
+            if not load.drive and not is_one_force(scene, load)
+        ]
+        problems += [
+            Problem(
+                ("loads", index, "drive"),
+                f"{load.name!r} drives a body, which only the {DEFAULT_METHOD} method does; use {DEFAULT_METHOD}",
+            )
+            for index, load in enumerate(scene.loads)
+            if load.drive
         ]
         if scene.friction_of:
             message = f"the {name} method has one friction for all; use {DEFAULT_METHOD}"

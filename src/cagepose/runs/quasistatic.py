@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
+from cagepose.kernels.driven.workspace import DriveWorkspace, empty_drive_workspace
 from cagepose.kernels.quasistatic.run import QuasistaticRules
 from cagepose.kernels.quasistatic.step import RULE_NAMES, STUCK
-from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace, empty_quasistatic_workspace
 from cagepose.model.load import Load
 from cagepose.model.remarks import remarks
 from cagepose.model.scene import Scene
+from cagepose.runs.actions import actions_of
+from cagepose.runs.drives import drives_of
 from cagepose.runs.run import PhaseRun
 from cagepose.runs.warnings_of_runs import (
     edge_warnings,
@@ -37,9 +41,11 @@ def quasistatic_rules(_scene: Scene) -> QuasistaticRules:
     return QuasistaticRules(TURN_STEP_RAD, STEP_LIMIT)
 
 
-def quasistatic_workspace(scene: Scene, step_limit: int) -> QuasistaticWorkspace:
+def quasistatic_workspace(scene: Scene, step_limit: int) -> DriveWorkspace:
     """Return what one run of a scene at a time writes to."""
-    return empty_quasistatic_workspace(scene.geometry, step_limit)
+    n_phases, n_actions = actions_of(scene).shape
+    n_legs = np.asarray(drives_of(scene).legs).shape[2]
+    return empty_drive_workspace(scene.geometry, step_limit, n_phases, n_legs, n_actions)
 
 
 def quasistatic_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: float) -> Iterator[str]:

@@ -97,7 +97,7 @@ def _sizes(outcome: Outcome, scene: Scene, ends: Sequence[Pose]) -> Iterator[tup
     works = (normal * contacts["gap"]).tolist()
     squares = (normal * normal + (across * across) @ ONES).tolist()
     first = 0
-    for last, load_n in zip(phases["n_contacts"].tolist(), _load_sizes(scene, ends), strict=False):
+    for last, load_n in zip(phases["n_contacts"].tolist(), _load_sizes(scene, outcome, ends), strict=False):
         largest = max(squares[first:last], default=0.0)
         yield sum(works[first:last]) / (load_n * scene.size_m), largest**0.5 / load_n
         first = last
@@ -107,11 +107,11 @@ _LOAD_SIZES: WeakKeyDictionary[Scene, list[float]] = WeakKeyDictionary()
 """A scene never changes: without springs its loads are of one size wherever the object is."""
 
 
-def _load_sizes(scene: Scene, ends: Sequence[Pose]) -> list[float]:
+def _load_sizes(scene: Scene, outcome: Outcome, ends: Sequence[Pose]) -> list[float]:
     """Return the size of the load at the end of each phase."""
     if scene in _LOAD_SIZES:
         return _LOAD_SIZES[scene]
-    sizes = [load_size(scene, phase, end) for phase, end in enumerate(ends)]
+    sizes = [load_size(scene, phase, end, outcome.displaced[phase]) for phase, end in enumerate(ends)]
     if len(ends) == len(scene.loads) and not any(load.springs for load in scene.loads):
         _LOAD_SIZES[scene] = sizes
     return sizes

@@ -14,7 +14,8 @@ from cagepose.runs.solved import Solution, read_events, written
 def replay_event(run: Run, phase: int, event: int, *, in_python: bool = False) -> Event:
     """Make one event of a run again.
 
-    A step of a method depends on nothing but the state before it, so this is the same event to the last digit.
+    A step of a method depends on nothing but the state before it, so this is the same event to the last digit. Where a
+    phase drives bodies of the cage it depends on all that came before: from there on the whole scene is run again.
 
     Parameters
     ----------
@@ -38,6 +39,8 @@ def replay_event(run: Run, phase: int, event: int, *, in_python: bool = False) -
     scene, outcome = run.scene, solution.outcome
     first_step, n_steps = solution.steps_of(phase, event)
     steps: Any = outcome.steps
+    if any(load.drive for load in scene.loads[: phase + 1]):
+        return _in_a_whole_run(solution, phase, event, in_python=in_python)
     method, repeated = solution.method, empty_outcome(scene.geometry, 1, n_steps, outcome.order.shape[1])
     kernel = method.repeat.python if in_python else method.repeat
     kernel(
@@ -53,3 +56,14 @@ def replay_event(run: Run, phase: int, event: int, *, in_python: bool = False) -
     )
     (found,) = read_events(scene, method, written(repeated))
     return found
+
+
+def _in_a_whole_run(solution: Solution, phase: int, event: int, *, in_python: bool) -> Event:
+    scene, method, rules = solution.scene, solution.method, solution.rules
+    outcome = empty_outcome(scene.geometry, len(scene.loads), rules.step_limit, solution.outcome.order.shape[1])
+    kernel = method.run.python if in_python else method.run
+    kernel(
+        part_of(scene), cases_of(scene, solution.friction), rules, method.workspace(scene, rules.step_limit), outcome
+    )
+    again = Solution(scene, method, rules, solution.friction, written(outcome))
+    return again.phases()[phase].events[event]

@@ -17,18 +17,36 @@ from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.wording import coordinates, counted, few
-from cagepose.runs.frames import contact_columns, data_frame, event_columns
+from cagepose.runs.driven import DriveRun
+from cagepose.runs.frames import contact_columns, data_frame, drive_columns, event_columns
+from cagepose.runs.on_the_way import first_row, is_driven_on, row_on_curve, value_at
 from cagepose.runs.proof import Proof
 
 MotionKind = Literal["travel", "turn", "screw"]
 Note = Literal["tie", "balanced", "small turn", "edge tie", "edge"]
-Verdict = Literal["stable", "rests", "may rest", "moves", "escapes", "spins", "cycling", "stalled", "limit"]
+Verdict = Literal[
+    "stable",
+    "rests",
+    "may rest",
+    "moves",
+    "escapes",
+    "spins",
+    "cycling",
+    "stalled",
+    "limit",
+    "blocked",
+    "jams",
+    "stops",
+]
 
 FAILURES: frozenset[Verdict] = frozenset({"spins", "cycling", "stalled", "limit"})
 """Verdicts that name a run which did not find an end. None of them is a rest."""
 
 AT_REST: frozenset[Verdict] = frozenset({"stable", "rests", "may rest"})
-"""Verdicts after which the next phase starts."""
+"""Verdicts that name a rest. The next phase starts after it."""
+
+STOPPED: frozenset[Verdict] = frozenset({"blocked", "jams", "stops"})
+"""Verdicts of a drive that does not go on, though nothing failed. The next phase starts after it."""
 
 CONTRADICTED = "by the paper's rules; by the mechanics it moves on from there"
 """What is told behind the verdict of a run that is contradicted."""
@@ -156,6 +174,8 @@ class Event:
         turn" (held, though the load could still turn the object by less than counts), "edge tie" (a contact on an edge
         whose faces make the same angle with the push), "edge" (it begins to move only because a contact lies exactly on
         an edge: with another face of that the contacts would hold it); None: nothing.
+    share
+        How much of the phase's drive is done after it, from 0 to 1.
     path
         Poses on the way to ``pose_world_object``, the last of them, where the way is not that of ``motion`` alone (a
         sliding contact bends it); empty: it is.
@@ -168,6 +188,7 @@ class Event:
     pose_world_object: Pose
     note: Note | None
     path: tuple[Pose, ...] = ()
+    share: float = 0.0
 
     def __repr__(self) -> str:
         moved = "no motion" if self.motion is None else self.motion.kind
@@ -189,6 +210,9 @@ class PhaseRun:
         At the end, with what they carry if the load is balanced.
     proof
         What the mechanics says of the pose at the end, whatever the method.
+    drive
+        What came of the drive of bodies of the cage; None: nothing was driven, or the object did not come to rest
+        before it.
     """
 
     name: str
@@ -197,6 +221,7 @@ class PhaseRun:
     events: tuple[Event, ...]
     contacts: tuple[Contact, ...]
     proof: Proof
+    drive: DriveRun | None = None
 
     def __repr__(self) -> str:
         counts = counted((len(self.events), "event", "events"), (len(self.contacts), "contact", "contacts"))
@@ -220,16 +245,20 @@ class Frame:
         How much of the event's motion is done, above 0 to 1.
     pose_world_object
         Where the object is.
+    share
+        How much of the phase's drive is done, from 0 to 1.
     """
 
     phase_index: int
     event_index: int
     fraction: float
     pose_world_object: Pose
+    share: float = 0.0
 
     def __repr__(self) -> str:
         place = f"phase {self.phase_index}, event {self.event_index}, fraction {self.fraction:.4g}"
-        return f"<Frame: {place}, {self.pose_world_object}>"
+        share = f", {self.share:.4g} of the drive" if self.share else ""
+        return f"<Frame: {place}{share}, {self.pose_world_object}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -307,9 +336,10 @@ class Run:
         """The centre of gravity at the end, (3,), metres."""
         return self.pose.transform(self.scene.object.center_of_gravity_m)
 
-    def to_frame(self, rows: Literal["events", "contacts"] = "events") -> Any:
-        """Return a ``pandas.DataFrame`` with a row for each event, or for each contact at the end of each phase, with
-        the force that it carries. Lengths are metres, angles radians; what there is none of is NaN.
+    def to_frame(self, rows: Literal["events", "contacts", "drive"] = "events") -> Any:
+        """Return a ``pandas.DataFrame`` with a row for each event; for each contact at the end of each phase, with the
+        force that it carries; or for each place along a drive, with how much of it is done, the drivers' force and the
+        object's pose. Lengths are metres, angles radians; what there is none of is NaN.
 
         Raises
         ------
@@ -318,15 +348,19 @@ class Run:
         ValueError
             Other rows.
         """
-        if rows not in ("events", "contacts"):
-            raise ValueError(f"rows is {rows!r}; give 'events' or 'contacts'")
-        events = rows == "events"
-        return data_frame(event_columns(self.phases) if events else contact_columns(self.scene, self.phases))
+        if rows == "events":
+            return data_frame(event_columns(self.phases))
+        if rows == "contacts":
+            return data_frame(contact_columns(self.scene, self.phases))
+        if rows == "drive":
+            return data_frame(drive_columns(self.phases))
+        raise ValueError(f"rows is {rows!r}; give 'events', 'contacts' or 'drive'")
 
     def frames(self, per_turn: int = 10) -> Iterator[Frame]:
-        """Yield the start pose, then ``per_turn`` pictures of each turn or screw and one of each travel.
+        """Yield the start pose, then ``per_turn`` pictures of each turn or screw and of each event in which a drive
+        goes on, and one of each other travel.
 
-        Those of a sliding contact's bent way lie on it: see `Event.path`.
+        Those of a bent way lie on it: see `Event.path`.
 
         Raises
         ------
@@ -337,18 +371,38 @@ class Run:
             raise ValueError(f"per_turn is {per_turn}; give at least 1")
         yield Frame(0, -1, 1.0, self.phases[0].start_pose)
         for phase_index, phase in enumerate(self.phases):
-            pose = phase.start_pose
             for event_index, event in enumerate(phase.events):
-                if event.motion is not None:
-                    n_frames = 1 if event.motion.kind == "travel" else per_turn
-                    for step in range(1, n_frames):
-                        fraction = step / n_frames
-                        yield Frame(phase_index, event_index, fraction, self.pose_on_the_way(pose, event, fraction))
-                    yield Frame(phase_index, event_index, 1.0, event.pose_world_object)
-                pose = event.pose_world_object
+                goes_on = is_driven_on(phase, event_index)
+                if event.motion is None and not goes_on:
+                    continue
+                is_one = event.motion is not None and event.motion.kind == "travel" and not goes_on
+                n_frames = 1 if is_one else per_turn
+                for step in range(1, n_frames):
+                    yield self.frame_at(phase_index, event_index, step / n_frames)
+                yield Frame(phase_index, event_index, 1.0, event.pose_world_object, event.share)
+
+    def frame_at(self, phase_index: int, event_index: int, fraction: float) -> Frame:
+        """Return what is to be seen after ``fraction`` (0 to below 1) of an event.
+
+        Where its phase's drive goes on in it, the drive does so evenly.
+
+        Raises
+        ------
+        ValueError
+            The event is a travel without end, or neither a motion nor a drive that goes on.
+        """
+        phase = self.phases[phase_index]
+        event = phase.events[event_index]
+        start = phase.events[event_index - 1].pose_world_object if event_index else phase.start_pose
+        row = row_on_curve(phase, event_index, fraction)
+        if phase.drive is None or row is None or not is_driven_on(phase, event_index):
+            return Frame(phase_index, event_index, fraction, self.pose_on_the_way(start, event, fraction), event.share)
+        first = first_row(phase.events, event_index) or 0
+        pose = self._pose_on_path(start, event, row - first)
+        return Frame(phase_index, event_index, fraction, pose, value_at(phase.drive.curve.share, row))
 
     def pose_on_the_way(self, start: Pose, event: Event, fraction: float) -> Pose:
-        """Return where the object is after ``fraction`` (0 to below 1) of an event that began at ``start``.
+        """Return where the object is after ``fraction`` (0 to below 1) of an event's motion that began at ``start``.
 
         Raises
         ------
@@ -359,10 +413,16 @@ class Run:
             raise ValueError(f"the event {event.rule!r} is no motion, so there is no way to be on")
         if not event.path:
             return event.motion.pose_at(start, fraction)
-        n_done = int(fraction * len(event.path))
+        return self._pose_on_path(start, event, fraction * len(event.path))
+
+    def _pose_on_path(self, start: Pose, event: Event, place: float) -> Pose:
+        """Return where the object is at a place of an event's path: 1.5 is midway between its first two poses."""
+        n_done = int(place)
+        if n_done >= len(event.path):
+            return event.pose_world_object
         before = event.path[n_done - 1] if n_done else start
         step = motion_between(before, event.path[n_done], self.scene.object.center_of_gravity_m, self.scene.size_m)
-        return before if step is None else step.pose_at(before, fraction * len(event.path) - n_done)
+        return before if step is None else step.pose_at(before, place - n_done)
 
 
 def motion_between(start: Pose, end: Pose, center_object_m: FloatArray, size_m: float) -> Motion | None:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import threading
 import time
 from collections import OrderedDict
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from cagepose.kernels.native.slots import Slots
+from cagepose.kernels.outcome.cases import Cases
 from cagepose.kernels.outcome.records import Outcome, empty_outcome
 from cagepose.model.scene import Scene
 from cagepose.runs.cases import prepared
@@ -18,7 +19,7 @@ from cagepose.runs.run import Run
 from cagepose.runs.solved import Solution, written
 
 WORKSPACES_KEPT = 8
-"""For each thread: scenes of the same numbers of points, boxes and phases share one."""
+"""For each thread: scenes of the same numbers of points, boxes, phases, actions and legs share one."""
 
 
 def run(scene: Scene, method: str | None = None) -> Run:
@@ -44,7 +45,7 @@ def run_with(scene: Scene, method: Method, rules: Any) -> Run:
     """Run a scene by a method with other numbers than its own."""
     friction = method.friction(scene)
     part, cases = prepared(scene, friction)
-    work = _workspace(scene, method, rules.step_limit)
+    work = _workspace(scene, method, rules.step_limit, cast(Cases, cases.value))
     began = time.perf_counter()
     try:
         method.run(part, cases, rules, work.work, work.outcome_slots)
@@ -73,9 +74,10 @@ class _Workspaces(threading.local):
 _WORKSPACES = _Workspaces()
 
 
-def _workspace(scene: Scene, method: Method, step_limit: int) -> _Workspace:
+def _workspace(scene: Scene, method: Method, step_limit: int, cases: Cases) -> _Workspace:
     n_phases, n_points = len(scene.loads), len(scene.cage.names)
-    size = (method.name, n_phases, n_points, len(scene.boxes.half_sizes), step_limit, *_sizes(scene))
+    acting = np.asarray(cases.actions).shape[2], np.asarray(cases.drives.legs).shape[2]
+    size = (method.name, n_phases, n_points, len(scene.boxes.half_sizes), step_limit, *acting, *_sizes(scene))
     kept = _WORKSPACES.by_size
     if size in kept:
         kept.move_to_end(size)

@@ -12,6 +12,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.methods import Method
 from cagepose.runs.proof import Proof
+from cagepose.runs.read_drive import read_drives
 from cagepose.runs.read_proof import read_proofs
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run, Verdict
 
@@ -63,7 +64,7 @@ class Solution:
 def written(outcome: Outcome) -> Outcome:
     """Return a copy of what is written of an outcome, whose memory is used again."""
     n_phases, n_events, n_steps, n_contacts = outcome.counts.tolist()
-    used = (4, n_phases, n_events, n_contacts, n_events, n_events, n_steps, n_steps, n_steps)
+    used = (4, n_phases, n_events, n_contacts, n_events, n_events, n_steps, n_phases, n_phases, n_steps, n_steps)
     arrays: tuple[Any, ...] = outcome
     copies = [array[:n].copy() for array, n in zip(arrays, used, strict=True)]
     for array in copies:
@@ -77,6 +78,7 @@ def _read_phases(scene: Scene, method: Method, outcome: Outcome) -> tuple[PhaseR
     events = _divided(read_events(scene, method, outcome), phases["n_events"].tolist())
     ends = [of_phase[-1].pose_world_object for of_phase in events]
     contacts, proofs = judged(scene, outcome, ends)
+    drives = read_drives(scene, outcome)
     starts = [scene.object.pose_world_object, *ends]
     found = list[PhaseRun]()
     for index, (code, proof) in enumerate(zip(codes, proofs, strict=True)):
@@ -90,6 +92,7 @@ def _read_phases(scene: Scene, method: Method, outcome: Outcome) -> tuple[PhaseR
                 events=tuple(events[index]),
                 contacts=tuple(contacts[index]),
                 proof=proof,
+                drive=drives[index],
             )
         )
     return tuple(found)
@@ -115,6 +118,8 @@ def read_events(scene: Scene, method: Method, outcome: Outcome) -> list[Event]:
         events["n_steps"].tolist(),
         strict=True,
     )
+    steps: Any = outcome.steps
+    shares = steps["share"].tolist()
     found, first, elements = list[Event](), 0, scene.cage.element_names
     for rule, note, motion, hit, touching, pose, n_steps in columns:
         found.append(
@@ -127,6 +132,7 @@ def read_events(scene: Scene, method: Method, outcome: Outcome) -> list[Event]:
                 pose_world_object=path[first + n_steps - 1] if path else pose,
                 note=NOTE_NAMES[note] if note < len(NOTE_NAMES) else None,
                 path=tuple(path[first : first + n_steps]),
+                share=shares[first + n_steps - 1],
             )
         )
         first += n_steps

@@ -9,7 +9,7 @@ import numpy as np
 
 from cagepose.kernels.contact.tolerances import LENGTH_OF_NO_SPRING
 from cagepose.model.scene import Scene
-from cagepose.runs.actions import tensions_at_zero
+from cagepose.runs.actions import spring_ends, tensions_at_zero
 from cagepose.runs.load_scaling import WEIGHT_BESIDE_FORCE, scaled_load
 from cagepose.runs.run import FAILURES, PhaseRun
 
@@ -50,12 +50,13 @@ def lost_weight_warnings(scene: Scene, n_phases: int) -> Iterator[str]:
 
 def spring_warnings(scene: Scene, phase: PhaseRun) -> Iterator[str]:
     """Springs whose pull has no direction where a phase has ended."""
-    start = scene.object.pose_world_object
+    start, cage = scene.object.pose_world_object, scene.cage.pose_world_cage
     springs = next(load.springs for load in scene.loads if load.name == phase.name)
     for number, spring in enumerate(springs, start=1):
-        length_m = float(np.linalg.norm(spring.to_world_m - phase.pose.transform(spring.at_object_m)))
+        ends = spring_ends(scene, spring, cage.position_m[None], cage.quaternion_wxyz[None])
+        length_m = float(np.linalg.norm(ends[0] - phase.pose.transform(spring.at_object_m)))
         if length_m <= LENGTH_OF_NO_SPRING * scene.size_m and tensions_at_zero(
-            spring, start.position_m[None], start.quaternion_wxyz[None]
+            spring, ends, start.position_m[None], start.quaternion_wxyz[None]
         ):
             yield (
                 f"{phase.name}: the ends of spring {number} have met, where it pulls nowhere; hold it farther away, or"

@@ -42,7 +42,7 @@ class BatchColumns:
         if path[:2] in (CAGE, START):
             return path[2:3] in (("position",), ("euler_zyx_deg",))
         if path[:2] == ("cage", "points"):
-            return len(path) == 4
+            return len(path) == 4 and not value_at(self._data, ("cage", "bodies"))  # whose points stand behind these
         return self._force is not None and path[: len(self._force)] == self._force
 
     def usable(self, columns: Columns) -> NDArray[np.bool_]:

@@ -19,7 +19,21 @@ from cagepose.sampling.findings import Findings
 from cagepose.sampling.sensitivity import ACCEPTED, Sensitivity
 from cagepose.sampling.statistics import N_BINS, Spread
 from cagepose.sampling.tolerances import ToleranceRow
-from cagepose.views.style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE_WIDTH_IN, PALE, PURPLE, SKY, VERMILLION, styled
+from cagepose.views.style import (
+    BLACK,
+    BLUE,
+    BROWN,
+    GREEN,
+    GREY,
+    ORANGE,
+    PAGE_WIDTH_IN,
+    PALE,
+    PURPLE,
+    SAND,
+    SKY,
+    VERMILLION,
+    styled,
+)
 
 MOST_BARS = 12
 """The first so many numbers that matter have a bar."""
@@ -30,6 +44,9 @@ VERDICT_COLOURS = {
     "rests": GREEN,
     "may rest": ORANGE,
     "escapes": SKY,
+    "blocked": BLUE,
+    "jams": BROWN,
+    "stops": SAND,
     "moves": PURPLE,
     "refused": PALE,
 }

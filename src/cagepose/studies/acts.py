@@ -11,6 +11,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.runs.driven_cage import CageAt
 from cagepose.runs.load_scaling import scaled_load
 
 LEAST_SHOWN = 0.01
@@ -38,7 +39,9 @@ class Act:
     follows
         Whether it turns with the object.
     to_world_m
-        Where a spring is held, (3,), metres; None: it is no spring.
+        Where a spring is held at the start, (3,), metres; None: it is no spring.
+    body
+        The number of the body of the cage that it rides on there, see `CageAt`; 0: it is held where nothing moves.
     """
 
     kind: Literal["weight", "force", "moment", "spring"]
@@ -47,13 +50,26 @@ class Act:
     direction: FloatArray
     follows: bool = False
     to_world_m: FloatArray | None = None
+    body: int = 0
 
-    def direction_at(self, pose: Pose) -> FloatArray:
-        """Return where it points to in the world, unit vector (3,), while the object is at a pose; zero where the ends
-        of a spring meet.
+    def end_world(self, cage: CageAt) -> FloatArray:
+        """Return where a spring is held, (3,), metres, while the bodies of the cage are where they are.
+
+        Raises
+        ------
+        ValueError
+            It is no spring.
+        """
+        if self.to_world_m is None:
+            raise ValueError(f"{self.name} is no spring, and is held nowhere")
+        return cage.displaced[self.body].transform(self.to_world_m)
+
+    def direction_at(self, pose: Pose, cage: CageAt) -> FloatArray:
+        """Return where it points to in the world, unit vector (3,), while the object is at a pose and the bodies of the
+        cage are where they are; zero where the ends of a spring meet.
         """
         if self.to_world_m is not None:
-            way = self.to_world_m - pose.transform(self.at_object_m)
+            way = self.end_world(cage) - pose.transform(self.at_object_m)
             length = float(np.linalg.norm(way))
             direction: FloatArray = way / length if length else way
             return direction
@@ -80,7 +96,9 @@ def acts_of(scene: Scene, load: Load) -> tuple[Act, ...]:
         found.append(Act("moment", name, center, moment.direction, moment.follows))
     for number, spring in enumerate(load.springs, start=1):
         name = load.name if is_alone else f"spring {number}"
-        found.append(Act("spring", name, spring.at_object_m, np.zeros(3), to_world_m=spring.to_world_m))
+        end = scene.cage.spring_end_world(spring)
+        body = 0 if spring.of is None else 1 + [body.name for body in scene.cage.bodies].index(spring.of)
+        found.append(Act("spring", name, spring.at_object_m, np.zeros(3), to_world_m=end, body=body))
     return tuple(found)
 
 

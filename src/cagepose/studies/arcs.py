@@ -9,6 +9,7 @@ import math
 import numpy as np
 
 from cagepose.kernels.contact.on_circle import place_on_circle
+from cagepose.runs.drives import displaced_after
 from cagepose.runs.judge import judged_workspace
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Contact, Run
@@ -22,7 +23,8 @@ def places_on_arcs(run: Run, phase: int) -> list[Contact]:
     scene, ended = run.scene, run.phases[phase]
     if not scene.has_other_shapes:
         return []
-    at, _ = judged_workspace(scene, ended.pose, phase, chosen_method(scene, run.method).friction(scene))
+    friction = chosen_method(scene, run.method).friction(scene)
+    at, _ = judged_workspace(scene, ended.pose, phase, friction, displaced_after(run, phase))
     contacts, center = at.contacts, ended.pose.transform(scene.object.center_of_gravity_m)
     found = list[Contact]()
     for row in range(int(contacts.used[0])):

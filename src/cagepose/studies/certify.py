@@ -22,6 +22,7 @@ from cagepose.kernels.stability.proof_search import balance_with_faces, search_w
 from cagepose.kernels.stability.relaxation import ANY_WAY, AWAY, BEFORE, BEHIND, INTO, N_VELOCITIES, QUARTER_TURNS
 from cagepose.model.checks import FloatArray, expect
 from cagepose.runs.cases import cases_of
+from cagepose.runs.drives import displaced_after
 from cagepose.runs.judge import judged_workspace
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.proof import Uniqueness
@@ -100,7 +101,7 @@ class _Search:
         if self.friction > 0.0:
             self.lengths[:, 1:] = (problem.friction / self.friction)[:, None]
         self.columns = problem.scaled(problem.wrenches)
-        self.at, _ = judged_workspace(scene, pose, phase, of_scene)
+        self.at, _ = judged_workspace(scene, pose, phase, of_scene, displaced_after(run, phase))
         contacts: Any = self.at.contacts
         work: Any = self.at.scratch[0]
         self.states, self.tree = contacts.states, work.tree

@@ -24,6 +24,7 @@ GROUNDS = {
     "escapes": "nothing is ahead",
     "slide": "the contacts cannot hold it, and those that carry slide",
     "pivot": "the contacts cannot hold it, but friction makes one of them stick",
+    "driven": "bodies of the cage are driven, and it gives way to them as it stays in balance",
     **dict.fromkeys(("A-1", "B-1"), "no contact, so along the load"),
     **dict.fromkeys(("A-2", "B-2"), "about its one contact, taken as fixed, along the load's moment"),
     **dict.fromkeys(("A-3", "B-3"), "about the line through two contacts, taken as fixed"),
@@ -37,8 +38,11 @@ ENDS: dict[Verdict, str] = {
     "cycling": "a pose came back",
     "stalled": "no progress",
     "limit": "too many events",
+    "blocked": "no motion of the object lets the drive go on",
+    "jams": "with friction there is no way on for the drive; without, there would be one",
+    "stops": "the drive needs as much force as it may have",
 }
-"""Why a run ends that does not end at rest."""
+"""Why a run ends that does not end at rest, or why a drive does."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,6 +16,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.actions import wrench_at
 from cagepose.runs.cases import contact_friction
+from cagepose.runs.drives import displaced_after
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
 from cagepose.runs.tolerances import LEAST_RADIUS_OF_GYRATION
@@ -69,8 +70,11 @@ def contact_problem(run: Run, phase: int) -> ContactProblem:
     """Return the contact problem at the end of a phase, counted from 0, from a run's scene and the pose there."""
     scene, pose = run.scene, run.phases[phase].pose
     of_scene = chosen_method(scene, run.method).friction(scene)
-    is_shaped = scene.has_other_shapes
-    touched = touched_shapes(scene, pose, phase, of_scene) if is_shaped else touched_faces(scene, pose)
+    displaced = displaced_after(run, phase)
+    if scene.has_other_shapes:
+        touched = touched_shapes(scene, pose, phase, of_scene, displaced)
+    else:
+        touched = touched_faces(scene, pose, displaced)
     groups: dict[object, list[int]] = {}
     for number, touch in enumerate(touched):
         groups.setdefault(touch.group, []).append(number)
@@ -81,7 +85,7 @@ def contact_problem(run: Run, phase: int) -> ContactProblem:
     wrenches = np.concatenate([directions, np.cross(arms[:, None], directions)], axis=2)
     friction = np.array([contact_friction(scene, of_scene, face.point, face.box) for face in faces])
     scale = _scale(scene, pose)
-    load = _load(scene, pose, phase)
+    load = np.concatenate(wrench_at(scene, phase, pose, displaced))
     load /= float(np.linalg.norm(scale @ load)) or 1.0
     by_group = tuple(map(tuple, groups.values()))
     return ContactProblem(faces, by_group, directions, places, wrenches, friction, load, scale)
@@ -98,8 +102,3 @@ def _scale(scene: Scene, pose: Pose) -> FloatArray:
     least = (LEAST_RADIUS_OF_GYRATION * scene.object.reach_m) ** 2
     scale[3:, 3:] = (pose.rotation @ axes).T / np.sqrt(np.maximum(squares, least))[:, None]
     return scale
-
-
-def _load(scene: Scene, pose: Pose, phase: int) -> FloatArray:
-    """Return force and moment of a phase's load about the centre of gravity."""
-    return np.concatenate(wrench_at(scene, phase, pose))

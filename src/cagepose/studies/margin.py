@@ -14,10 +14,12 @@ from cagepose.model.checks import FloatArray, expect
 from cagepose.model.wording import counted
 from cagepose.runs.actions import wrench_at
 from cagepose.runs.cases import contact_friction
+from cagepose.runs.driven_cage import cage_at_end
+from cagepose.runs.drives import displaced_after
 from cagepose.runs.judge import judge_pose
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
-from cagepose.runs.run import AT_REST, Contact, Run
+from cagepose.runs.run import AT_REST, STOPPED, Contact, Run
 from cagepose.studies.arcs import places_on_arcs
 from cagepose.studies.contact_cones import (
     ConeProgram,
@@ -109,9 +111,9 @@ class Margin:
 def margin(run: Run, phase: int = -1) -> Margin | None:
     """Say how large an extra force and moment a phase's end still balances, and what each contact may carry.
 
-    Returns None where the phase did not end in a balance, or in one without contacts or without a load on them, as on
-    springs; where contacts without play carry its load to second order, by forces without bound; and where points on
-    edges have more than 729 choices of faces.
+    Bodies of the cage stand where they were driven to. Returns None where the phase did not end in a balance, or in one
+    without contacts or without a load on them, as on springs; where contacts without play carry its load to second
+    order, by forces without bound; and where points on edges have more than 729 choices of faces.
 
     Parameters
     ----------
@@ -128,7 +130,7 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
     expect(run, Run, "run")
     number = range(len(run.phases))[phase]
     ended = run.phases[number]
-    if ended.verdict not in AT_REST or ended.proof.verdict == "moves" or not ended.contacts:
+    if ended.verdict not in AT_REST | STOPPED or ended.proof.verdict == "moves" or not ended.contacts:
         return None
     contacts, groups = _counting_contacts(run, number)
     choices = list(islice(product(*groups), CHOICES_LIMIT + 1))
@@ -176,7 +178,7 @@ def _counting_contacts(run: Run, phase: int) -> tuple[list[Contact], list[list[i
     contacts = run.phases[phase].contacts
     if any(contact.group is None for contact in contacts):
         friction = chosen_method(run.scene, run.method).friction(run.scene)
-        contacts = judge_pose(run.scene, run.phases[phase].pose, phase, friction)[1]
+        contacts = judge_pose(run.scene, run.phases[phase].pose, phase, friction, displaced_after(run, phase))[1]
     counting = [contact for contact in contacts if contact.group != NEVER_COUNTS]
     groups = dict[int | None, list[int]]()
     for number, contact in enumerate(counting):
@@ -186,7 +188,7 @@ def _counting_contacts(run: Run, phase: int) -> tuple[list[Contact], list[list[i
 
 def _cones(run: Run, phase: int, contacts: list[Contact]) -> ContactCones:
     center = run.phases[phase].pose.transform(run.scene.object.center_of_gravity_m)
-    places = dict(zip(run.scene.cage.names, run.scene.cage.points_world(), strict=True))
+    places = dict(zip(run.scene.cage.names, cage_at_end(run, phase).points_world, strict=True))
     normals = np.array([-contact.normal_world for contact in contacts]).reshape(-1, 3)
     at = [places.get(contact.point, contact.place_world) for contact in contacts]
     arms = np.array(at).reshape(-1, 3) - center
@@ -197,7 +199,7 @@ def _cones(run: Run, phase: int, contacts: list[Contact]) -> ContactCones:
 
 def _load(run: Run, phase: int, cones: ContactCones) -> tuple[FloatArray, float]:
     """Return the wrench that contacts have to give, (6,), and the length that it was divided by."""
-    load = wrench_at(run.scene, phase, run.phases[phase].pose)
+    load = wrench_at(run.scene, phase, run.phases[phase].pose, displaced_after(run, phase))
     wrench = -np.append(load.force, load.moment / cones.length_m)
     size = float(np.linalg.norm(wrench))
     return wrench / (size or 1.0), size

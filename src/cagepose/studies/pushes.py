@@ -10,6 +10,7 @@ import numpy as np
 
 from cagepose.kernels.algebra.record import Rows, dtype_of
 from cagepose.kernels.contact.loads import CARDAN_MOMENT, DEAD_FORCE, Action, PhaseLoad, acting
+from cagepose.kernels.driven.workspace import empty_drive_workspace
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.records import empty_outcome
 from cagepose.kernels.outcome.trace import VERDICT_NAMES
@@ -19,6 +20,7 @@ from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.cases import cases_of, part_of
+from cagepose.runs.drives import no_drives
 from cagepose.runs.methods import REGISTRY
 from cagepose.runs.quasistatic import TURN_STEP_RAD
 
@@ -107,7 +109,15 @@ class Pushes:
         That all pushes so far took together.
     """
 
-    def __init__(self, scene: Scene, start: Pose, seat: np.ndarray, unit_n: float = 1.0, unit_nm: float = 1.0) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        start: Pose,
+        seat: np.ndarray,
+        unit_n: float = 1.0,
+        unit_nm: float = 1.0,
+        displaced: FloatArray | None = None,
+    ) -> None:
         """
         Parameters
         ----------
@@ -119,21 +129,24 @@ class Pushes:
             What acts beside each push, rows of `Action`.
         unit_n, unit_nm
             How much force and moment a push has.
+        displaced
+            Where the bodies of the cage stand, as for `cases_of`.
         """
         self.start, self._cage = start, scene.cage.pose_world_cage
         self._center, self._units = scene.object.center_of_gravity_m, (unit_n, unit_nm)
         self.is_seated = len(seat) > 0
         self._actions = np.concatenate([np.zeros(1, dtype_of(Action)), seat])
-        method, cases = REGISTRY["quasistatic"], cases_of(scene, 0.0)
-        self._run = method.run
+        cases = cases_of(scene, 0.0, None, displaced)
+        self._run = REGISTRY["quasistatic"].run
         self._cases = cases._replace(
             point_frictions=np.full_like(cases.point_frictions, np.nan),
             box_frictions=np.full_like(cases.box_frictions, np.nan),
+            drives=no_drives(scene),
             actions=cast(Rows[Rows[PhaseLoad]], self._actions[None, None]),
         )
         self._outcome = empty_outcome(scene.geometry, 1, STEP_LIMIT, 0)
         rules = QuasistaticRules(TURN_STEP_RAD, STEP_LIMIT)
-        work = method.workspace(scene, STEP_LIMIT)
+        work = empty_drive_workspace(scene.geometry, STEP_LIMIT, 1, 1, len(self._actions))
         self._part, self._rules, self._work = Slots(part_of(scene)), Slots(rules), Slots(work)
         self._written = Slots(self._outcome)
         self.n_steps = 0

@@ -6,6 +6,7 @@ from cagepose.errors import Problem, SceneError
 from cagepose.model.scene import Scene
 from cagepose.model.wording import few
 from cagepose.runs.actions import actions_of, load_size
+from cagepose.runs.drives import displaced_after
 from cagepose.runs.run import AT_REST
 from cagepose.runs.solve import run
 from cagepose.studies.pushes import Pushes
@@ -25,13 +26,15 @@ def seated(scene: Scene, phase: str) -> Pushes:
     names = [load.name for load in scene.loads]
     if phase not in names:
         raise SceneError([Problem(("phase",), f"is {phase!r}, and the scene has {few(names)}; give one of them")])
-    number, ended = names.index(phase), run(scene).phases
+    whole = run(scene)
+    number, ended = names.index(phase), whole.phases
     if number >= len(ended) or ended[number].verdict not in AT_REST:
         how = ended[number].verdict if number < len(ended) else "is not reached"
         raise SceneError([Problem(("phase",), f"is {phase!r}, which does not come to rest ({how}); see cagepose run")])
-    pose = ended[number].pose
-    unit_n = SHARE_OF_LOAD * load_size(scene, number, pose)
-    pushes = Pushes(scene, pose, actions_of(scene)[number], unit_n, unit_n * scene.object.reach_m)
+    pose, displaced = ended[number].pose, displaced_after(whole, number)
+    unit_n = SHARE_OF_LOAD * load_size(scene, number, pose, displaced)
+    acting = actions_of(scene)[number]  # springs are held where they are at the start: kernels move them with bodies
+    pushes = Pushes(scene, pose, acting, unit_n, unit_n * scene.object.reach_m, displaced)
     settled = pushes.settle()
     if not settled.rests or settled.is_saddle:
         why = "no stable rest without friction is near"

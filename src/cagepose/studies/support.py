@@ -9,6 +9,8 @@ import numpy as np
 
 from cagepose.model.checks import FloatArray, unit_vector
 from cagepose.runs.actions import wrench_at
+from cagepose.runs.driven_cage import cage_at_end
+from cagepose.runs.drives import displaced_after
 from cagepose.runs.run import Run
 from cagepose.studies.arcs import places_on_arcs
 from cagepose.studies.tolerances import PARALLEL_SINE, ROUNDING_OF_CORNER
@@ -65,7 +67,8 @@ def load_view(run: Run, phase_index: int) -> LoadView:
         for contact in (*phase.contacts, *places_on_arcs(run, phase_index))
         if contact.point not in run.scene.cage.names and contact.place_world is not None
     ]
-    places = np.concatenate([run.scene.cage.points_world()[touching], np.reshape(on_shapes, (-1, 3))])
+    points_world = cage_at_end(run, phase_index).points_world
+    places = np.concatenate([points_world[touching], np.reshape(on_shapes, (-1, 3))])
     polygon = convex_hull(places @ axes)
     return LoadView(right, up, load_point, polygon, _margin(polygon, load_point))
 
@@ -83,7 +86,7 @@ def _load_line(run: Run, phase_index: int) -> tuple[FloatArray, FloatArray]:
         return unit_vector(load.gravity_world, "gravity"), pose.transform(center)
     if load.force is not None and not load.needs_newtons and not load.force.follows:
         return load.force.direction, pose.transform(load.force.at_object_m)
-    force, moment = wrench_at(scene, phase_index, pose)
+    force, moment = wrench_at(scene, phase_index, pose, displaced_after(run, phase_index))
     square = float(force @ force)
     if square == 0.0:
         raise ValueError(f"what acts in phase {load.name!r} has no direction: its forces cancel")

@@ -15,6 +15,7 @@ from cagepose.kernels.contact.tolerances import SAME_NORMAL_RAD
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.runs.drives import points_displaced
 
 PROBE, PROBE_MARGIN = 3.0, 1.5
 """In touch tolerances, of (2.7): a face is hidden where a point that far outside of it, and that far from its edge,
@@ -65,9 +66,9 @@ class Touch(NamedTuple):
     group: object
 
 
-def touched_faces(scene: Scene, pose: Pose) -> list[Touch]:
-    """Return the contacts of the cage's points with the object's boxes."""
-    points, half_sizes = scene.cage.points_world(), scene.boxes.half_sizes
+def touched_faces(scene: Scene, pose: Pose, displaced: FloatArray) -> list[Touch]:
+    """Return the contacts of the cage's points with the object's boxes, bodies being displaced as in `at_start`."""
+    points, half_sizes = points_displaced(scene, displaced), scene.boxes.half_sizes
     rotations = pose.rotation @ scene.boxes.box_rotations
     middles = pose.transform(scene.boxes.box_positions)
     touch_m, touched = scene.touch_m, list[Touch]()

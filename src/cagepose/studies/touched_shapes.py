@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 
 from cagepose.kernels.contact.contact_set import tangents_to
-from cagepose.model.checks import as_vector
+from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.judge import judged_workspace
 from cagepose.studies.touched_faces import ContactFace, Touch
 
 
-def touched_shapes(scene: Scene, pose: Pose, phase: int, friction: float) -> list[Touch]:
-    """Return the contacts at a pose; of rims that lie flat, also the points between
-    those that a run lists which the search for another onset has asked.
+def touched_shapes(scene: Scene, pose: Pose, phase: int, friction: float, displaced: FloatArray) -> list[Touch]:
+    """Return the contacts at a pose, bodies being displaced as for `cases_of`; of rims that lie flat, also the points
+    between those that a run lists which the search for another onset has asked.
     """
-    at, _ = judged_workspace(scene, pose, phase, friction)
+    at, _ = judged_workspace(scene, pose, phase, friction, displaced)
     contacts: Any = at.contacts
     rows = contacts.rows[: at.scratch[0].n_asked]
     center, counts, found = pose.transform(scene.object.center_of_gravity_m), Counter[tuple[str, str]](), list[Touch]()

@@ -1,4 +1,4 @@
-"""Where the object touches the cage at any pose: `TouchFinder`, for pictures of what goes on in a run."""
+"""Where the object touches the cage at any moment: `TouchFinder`, for pictures of what goes on in a run."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from cagepose.kernels.boundary.features import body_of, place_boundary
 from cagepose.kernels.boundary.geometry import Placement, empty_placement, place_object
 from cagepose.kernels.native.slots import Slots
 from cagepose.model.checks import FloatArray
 from cagepose.model.geometry import placed_bodies
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.runs.driven_cage import CageAt
 
 
 class PlacesOfContact(NamedTuple):
@@ -48,12 +50,17 @@ class TouchFinder:
         geometry = scene.geometry._replace(placed=placed_bodies(scene.cage, scene.geometry.cage))
         held, cage = np.asarray(geometry.held.features), np.asarray(geometry.cage.own.features)
         self._parts, self._cage_parts = np.array(held["part"]), np.array(cage["part"])
+        self._scene, self._placed = scene, geometry
+        self._displaced = (Pose(),) * (1 + len(scene.cage.bodies))
         self._geometry = Slots(geometry)
         self._placement: Placement = empty_placement(geometry)
         self._written = Slots(self._placement)
 
-    def at(self, pose_world_object: Pose) -> PlacesOfContact:
-        """Return what touches, within the scene's touch tolerance, with the object at a pose."""
+    def at(self, pose_world_object: Pose, cage: CageAt) -> PlacesOfContact:
+        """Return what touches, within the scene's touch tolerance, with the object at a pose and the bodies of the cage
+        where they are.
+        """
+        self._place_bodies(cage)
         place_object(self._geometry, *pose_world_object.as_tuples(), self._written)
         placement = self._placement
         every: Any = placement.memory.rows
@@ -66,3 +73,12 @@ class TouchFinder:
             np.array(rows["place"]),
             np.array(rows["normal"]),
         )
+
+    def _place_bodies(self, cage: CageAt) -> None:
+        """Place those bodies of the cage that are elsewhere than when they were last asked for."""
+        start = self._scene.cage.pose_world_cage
+        for body, (before, now) in enumerate(zip(self._displaced, cage.displaced, strict=True)):
+            if now is not before:
+                placed = body_of(self._placed.cage, self._placed.placed, body)
+                place_boundary(placed, *(now @ start).as_tuples())
+        self._displaced = cage.displaced

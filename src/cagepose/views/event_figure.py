@@ -17,10 +17,13 @@ from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
 from cagepose.model.scene import Scene
 from cagepose.runs.changes import Seen, changes_of
+from cagepose.runs.driven_cage import cage_at_end
+from cagepose.runs.on_the_way import DRIVEN
 from cagepose.runs.run import Run
 from cagepose.studies.ending import ending
 from cagepose.studies.support import convex_hull, load_view
 from cagepose.studies.support_region import SupportRegion, support_region
+from cagepose.views.drive_words import share_words
 from cagepose.views.solids import cut_off, outer_points, vertices_of
 from cagepose.views.style import (
     BLACK,
@@ -115,9 +118,12 @@ def _snapshots(run: Run, length_unit: LengthUnit) -> tuple[list[tuple[int, str]]
     """Return (index of the event, -1: the start; title) of each snapshot, and how many motions have none."""
     shots = [(-1, "start")]
     for change in changes_of(run):
-        if change.seen is not None:
+        share = change.event.share
+        goes_on = change.event.rule == DRIVEN
+        if change.seen is not None or goes_on:
             name = f"{change.number}. {_cut(change.phase.name)}, {change.event.rule}:"
-            amount = _amount(change.seen, length_unit)
+            amounts = [_amount(change.seen, length_unit)] if change.seen is not None else []
+            amount = "; ".join([*amounts, *([f"{share_words(share)} of the drive"] if goes_on else [])])
             gap = " " if len(name) + len(amount) < LONGEST_TITLE else "\n"
             shots.append((change.number - 1, f"{name}{gap}{amount}"))
     if len(shots) <= MOST_SNAPSHOTS:
@@ -151,8 +157,9 @@ def _cut(name: str) -> str:
 def _draw_view(panel: Axes, run: Run, phase_index: int, length_unit: LengthUnit) -> None:
     phase, view = run.phases[phase_index], load_view(run, phase_index)
     held, cage = run.scene.object, run.scene.cage
-    points, outer = cage.points_world(), phase.pose.transform(outer_points(held))
-    bodies = [cage.pose_world_cage.transform(vertices_of([shape])) for shape in cage.shapes]
+    at = cage_at_end(run, phase_index)
+    points, outer = at.points_world, phase.pose.transform(outer_points(held))
+    bodies = [at.pose_of_cage(which).transform(vertices_of([shape])) for which, shape in enumerate(cage.shapes)]
     shown_bodies = [cut_off(body, np.concatenate([points, outer]), held.reach_m) for body in bodies]
     # the cage and the object, along the load
     for body in bodies:

@@ -1,12 +1,13 @@
 """A run as curves: the object's angles and the way of its centre of gravity against the step, and who touched when.
 
-A step is one frame of `Run.frames`: ten for each turn or screw and one for each travel, as in the paper's figures.
+A step is one frame of `Run.frames`: ten for each turn or screw and one for each travel, as in the paper's figures; ten
+for each event in which a drive goes on, too.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -20,7 +21,7 @@ from matplotlib.ticker import MaxNLocator
 
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.checks import FloatArray
-from cagepose.runs.run import Event, Run
+from cagepose.runs.run import Event, Frame, Run
 from cagepose.studies.ending import ending
 from cagepose.views.style import BLACK, GREEN, GREY, PAGE_WIDTH_IN, PALE, PURPLE, SERIES, VERMILLION, Look, styled
 from cagepose.views.tolerances import LEAST_ANGLE_DEG, LEAST_LENGTH_OF_SIZE
@@ -69,7 +70,8 @@ def pose_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
         for panel in (angles, way, contacts):
             _draw_phases(panel, run, steps)
         _name_rules(angles, steps)
-        contacts.set_xlabel(f"step ({STEPS_PER_TURN} for each turn or screw, 1 for each travel)")
+        many = "turn, screw or drive" if any(phase.drive for phase in run.phases) else "turn or screw"
+        contacts.set_xlabel(f"step ({STEPS_PER_TURN} for each {many}, 1 for each travel)")
         contacts.set_xlim(-0.5, max(len(steps.angles_deg) - 0.5, 1.0))
         contacts.xaxis.set_major_locator(MaxNLocator(integer=True))
         figure.suptitle(f"{run.scene.name}: {ending(run)} ({run.method})", fontsize=11)
@@ -82,18 +84,18 @@ def _steps(run: Run) -> _Steps:
     angles = np.degrees(np.unwrap([frame.pose_world_object.euler_zyx for frame in frames], axis=0))
     center = run.scene.object.center_of_gravity_m
     places = np.array([frame.pose_world_object.transform(center) for frame in frames])
-    return _Steps(angles, places - places[0], list(_spans(run)))
+    return _Steps(angles, places - places[0], list(_spans(run, frames)))
 
 
-def _spans(run: Run) -> Iterator[tuple[int, int, int, Event]]:
-    """Yield phase index, first and last step of each event; one without motion counts where none has led."""
+def _spans(run: Run, frames: Sequence[Frame]) -> Iterator[tuple[int, int, int, Event]]:
+    """Yield phase index, first and last step of each event; one without frames counts where none has led."""
+    last_steps = {(frame.phase_index, frame.event_index): step for step, frame in enumerate(frames)}
     step = 0
     marked = -1
     for phase_index, phase in enumerate(run.phases):
-        for event in phase.events:
+        for event_index, event in enumerate(phase.events):
             first = step
-            if event.motion is not None:
-                step += 1 if event.motion.kind == "travel" else STEPS_PER_TURN
+            step = last_steps.get((phase_index, event_index), step)
             if step > marked:
                 yield phase_index, first, step, event
                 marked = step

@@ -11,6 +11,7 @@ import pytest
 
 from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, load_scene, run
 from cagepose.kernels.outcome.trace import STALLED
+from cagepose.runs.driven_cage import cage_at_start
 from cagepose.views.viewer import playback as playback_module
 from cagepose.views.viewer.page_data import notes
 from cagepose.views.viewer.playback import SHOWN_OF_ESCAPE, playback
@@ -28,7 +29,7 @@ def rail():
 def drawn_gaps(stage: Stage, pose: Pose, look: Look) -> np.ndarray:
     """Distance of each cage point from the object on screen, as a fraction of the scene's size."""
     points = stage.points(look)
-    nearest = nearest_on_object(stage.shown.run.scene.object, stage.pose(pose, look), Cage(points))
+    nearest = nearest_on_object(stage.shown.run.scene.object, stage.pose(pose, look), cage_at_start(Cage(points)))
     gaps = ((points - nearest.feet_world) * nearest.normals_world).sum(axis=1)
     return gaps / stage.size_m
 
@@ -66,7 +67,7 @@ def test_contact_forces_and_load_balance_in_the_last_shot_of_each_phase(rail):
             total += force
             moment += np.cross(film.points_world[point], force)
         for act in film.loads[row.phase]:
-            total += act.direction_at(shot.pose_world_object)
+            total += act.direction_at(shot.pose_world_object, shot.cage)
             moment += np.cross(shot.pose_world_object.transform(act.at_object_m), act.direction)
         assert np.abs(total).max() < 2e-6  # beside a push without a mass, the weight of 1e-6 is not drawn
         assert np.abs(moment).max() < 2e-6 * rail.scene.size_m
@@ -100,20 +101,21 @@ def test_what_touches_on_screen_is_what_touches_and_gaps_grow_alike(rail, exagge
     stage = Stage(playback(rail))
     for row in stage.shown.rows:
         shot = stage.shown.shots[row.last_shot]
-        true = drawn_gaps(stage, shot.pose_world_object, Look(0, 1.0))
-        shown = drawn_gaps(stage, shot.pose_world_object, Look(0, float(exaggeration)))
+        true = drawn_gaps(stage, shot.pose_world_object, Look(0, 1.0, shot.cage))
+        shown = drawn_gaps(stage, shot.pose_world_object, Look(0, float(exaggeration), shot.cage))
         assert np.abs(shown - exaggeration * true).max() < 4e-3
 
 
 def test_exaggeration_turns_about_the_same_axis_and_moves_along_the_same_line():
     part = Object([Box((0.2, 0.02, 0.02))])
     film = playback(run(Scene(part, Cage([(0.0, 0.0, -0.011)]), [Load("weight", gravity=(0, 0, -1))])))
-    stage = Stage(replace(film, shots=(film.shots[0],)))
+    stage = Stage(replace(film, shots=(film.shots[0],), rows=()))
     moved = Pose((0.001, 0.0, -0.002), euler_zyx=(0.0, 0.01, 0.0))
-    shown = stage.pose(moved, Look(0, 20.0))
+    cage = film.shots[0].cage
+    shown = stage.pose(moved, Look(0, 20.0, cage))
     assert shown.position_m == pytest.approx([0.02, 0.0, -0.04])
     assert shown.euler_zyx == pytest.approx([0.0, 0.2, 0.0])
-    assert stage.pose(moved, Look(0, 1.0)) is moved
+    assert stage.pose(moved, Look(0, 1.0, cage)) is moved
 
 
 def test_a_scene_in_millimetres_and_one_in_metres_look_alike():
@@ -133,7 +135,8 @@ def test_a_scene_in_millimetres_and_one_in_metres_look_alike():
         assert small.place(one.pose_world_object.position_m) == pytest.approx(
             large.place(other.pose_world_object.position_m), abs=1e-9
         )
-    assert small.place(small.points(Look(0, 10.0))) == pytest.approx(large.place(large.points(Look(0, 10.0))))
+    points = [stage.place(stage.points(Look(0, 10.0, stage.cage(0)))) for stage in (small, large)]
+    assert points[0] == pytest.approx(points[1])
 
 
 def test_the_exaggeration_proposed_shows_play_and_leaves_long_motions_alone(rail):
@@ -156,7 +159,7 @@ def test_a_long_way_into_the_cage_is_shown_as_it_is_and_the_play_behind_it_exagg
     assert pushed.proposed >= 10
     middle = stage.look(weight.start // 2, stage.proposed)
     assert middle.factor == 1.0
-    assert stage.look(pushed.last, stage.proposed) == (weight.start, pushed.proposed)
+    assert stage.look(pushed.last, stage.proposed)[:2] == (weight.start, pushed.proposed)
     factors = [stage.look(shot, stage.proposed).factor for shot in range(len(film.shots))]
     assert max(abs(one - other) for one, other in itertools.pairwise(factors)) < pushed.proposed / 2
 

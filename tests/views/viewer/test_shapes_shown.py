@@ -75,7 +75,7 @@ def test_what_touches_on_screen_touches_however_much_a_small_gap_is_exaggerated(
     film = playback(run(ball_on_table(0.01005)))
     stage = Stage(film)
     for times in (1, 10, 100):
-        look = Look(0, float(times))
+        look = Look(0, float(times), stage.cage(-1))
         shift = stage.shifts(look)[0]
         center = stage.pose(film.shots[-1].pose_world_object, look).position_m
         assert shift == pytest.approx([0, 0, -(times - 1) * 5e-5], abs=1e-12)

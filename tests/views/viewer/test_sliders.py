@@ -163,7 +163,9 @@ def test_without_friction_in_the_file_the_slider_shows_what_the_method_takes(tmp
 
 @pytest.mark.parametrize("path", OUR_SCENES, ids=[path.stem for path in OUR_SCENES])
 def test_every_slider_can_be_used_over_its_whole_range(path):
-    """On every scene of ours; but a load whose direction is along one axis has none at zero. Run are the ends alone."""
+    """On every scene of ours; but a load whose direction is along one axis has none at zero, and a spring that nothing
+    has tightened is none. Run are the ends alone.
+    """
     what_if = WhatIf(read_scene_text(path))
     n_values, problems = 0, []
     for control in what_if.controls:
@@ -179,7 +181,8 @@ def test_every_slider_can_be_used_over_its_whole_range(path):
             except CageposeError as error:
                 problems.append(str(error))
     print(f"{path.stem}: {len(problems)} of {n_values} values cannot be used")
-    assert all("is all zeros, which points nowhere" in problem for problem in problems), problems
+    nothing = ("is all zeros, which points nowhere", "so the spring does nothing")
+    assert all(any(words in problem for words in nothing) for problem in problems), problems
 
 
 @pytest.mark.parametrize("name", ["drawer", "phone-dock", "rollers"])

@@ -89,3 +89,9 @@ def transposed_times(m: Matrix, a: Vector) -> Vector:
         m[0][1] * a[0] + m[1][1] * a[1] + m[2][1] * a[2],
         m[0][2] * a[0] + m[1][2] * a[1] + m[2][2] * a[2],
     )
+
+
+@kernel
+def matrix_product(m: Matrix, n: Matrix) -> Matrix:
+    """m n."""
+    return (transposed_times(n, m[0]), transposed_times(n, m[1]), transposed_times(n, m[2]))

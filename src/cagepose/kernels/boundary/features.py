@@ -323,7 +323,12 @@ def features_of(own: Boundary) -> tuple[int, int]:
 @kernel
 def place_boundary(body: PlacedBoundary, position: Vector, quaternion: Quaternion) -> None:
     """Place a boundary at a pose."""
-    rotation = matrix_from_quaternion(quaternion)
+    place_turned(body, position, matrix_from_quaternion(quaternion))
+
+
+@kernel
+def place_turned(body: PlacedBoundary, position: Vector, rotation: Matrix) -> None:
+    """Place a boundary at a pose that is given with a rotation matrix."""
     for k in range(3):
         body.pose[0, k] = position[k]
         for j in range(3):

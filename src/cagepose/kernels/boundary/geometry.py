@@ -152,7 +152,7 @@ def empty_cage(geometry: Geometry) -> PlacedCage:
     own, n_bodies = geometry.cage.own, len(geometry.cage.first_nodes) - 1
     parts = np.asarray(own.parts)
     return PlacedCage(
-        np.empty((int(((parts["body"] == 0) & (parts["point"] >= 0)).sum()), 3)),
+        np.empty((int((parts["point"] >= 0).sum()), 3)),
         empty_placing(own, n_bodies),
         empty_rows(Feature, len(own.features)),
         empty_rows(BodyPart, len(own.parts)),

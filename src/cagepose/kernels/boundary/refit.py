@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.boundary.features import Boundary
-from cagepose.kernels.boundary.tree import VERTICES
+from cagepose.kernels.algebra.record import Rows
+from cagepose.kernels.boundary.features import Feature
+from cagepose.kernels.boundary.tree import VERTICES, Node
 from cagepose.kernels.native.kernel import kernel
 
 
 @kernel
-def refit_vertices(boundary: Boundary) -> None:
-    """Fit the boxes of the tree of vertices to where these are: those of leaves first, as nodes come before the nodes
-    that they are divided into.
+def refit_vertices(nodes: Rows[Node], features: Rows[Feature]) -> None:
+    """Fit the boxes of a body's tree of vertices to where these are: those of leaves first, as nodes come before the
+    nodes that they are divided into.
     """
-    nodes, features = boundary.nodes, boundary.features
     last = nodes[VERTICES].last
     for at in range(len(nodes) - 1, -1, -1):
         node = nodes[at]

@@ -12,7 +12,7 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.contact.cardan import cardan_at, cardan_moment, cardan_turns
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
-from cagepose.kernels.contact.tolerances import LENGTH_OF_NO_SPRING, SHORTEST_SPRING
+from cagepose.kernels.contact.tolerances import LENGTH_OF_NO_SPRING, ROUNDING_OF_ENDS, SHORTEST_SPRING
 from cagepose.kernels.native.kernel import kernel
 
 DEAD_FORCE, FOLLOWING_FORCE, DEAD_MOMENT, FOLLOWING_MOMENT, SPRING, CARDAN_MOMENT = 0, 1, 2, 3, 4, 5
@@ -44,6 +44,8 @@ class Action:
         Of a spring, force for each metre.
     tension_at_zero
         What its tension would be if its ends met: at the length l it is ``tension_at_zero + stiffness * l``.
+    body
+        The body of the cage that the anchor of a spring rides on; 0: it is held in the world.
     """
 
     kind: int
@@ -52,6 +54,7 @@ class Action:
     anchor: Annotated[FloatArray, 3]
     stiffness: float
     tension_at_zero: float
+    body: int
 
 
 PhaseLoad = Rows[Action]
@@ -115,8 +118,10 @@ def acting(action: Action, position: Vector, quaternion: Quaternion) -> Acting:
 
 @kernel
 def write_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray) -> float:
-    """Write the scaled wrench of a phase's load, D^-1/2 w; return the length of its terms, which may cancel."""
-    terms = 0.0
+    """Write the scaled wrench of a phase's load, D^-1/2 w; return the length of its terms, which may cancel. Those of a
+    spring are no shorter than what the rounding of its ends makes of its force.
+    """
+    terms = rounding = 0.0
     force, moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for which in range(len(load)):
         if is_idle(load[which]):
@@ -125,8 +130,11 @@ def write_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, frame:
         write_scaled_wrench(one.force, one.moment, frame, out)
         terms += math.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2 + out[3] ** 2 + out[4] ** 2 + out[5] ** 2)
         force, moment = plus(force, scaled(one.force, one.share)), plus(moment, scaled(one.moment, one.share))
+        if load[which].kind == SPRING:
+            ends = norm(vector_from(load[which].anchor)) + norm(position)
+            rounding += ROUNDING_OF_ENDS * load[which].stiffness * ends
     write_scaled_wrench(force, moment, frame, out)
-    return terms
+    return max(terms, rounding)
 
 
 @kernel

@@ -43,6 +43,9 @@ LAST_CHANGE = 1e-14
 """In lengths of the load. After so small a change the next one is rounding, since the digits double."""
 LENGTH_OF_NO_SPRING = 1e-6
 """In sizes of the scene. The ends of a shorter spring count as one point."""
+ROUNDING_OF_ENDS = 1e-4
+"""In stiffnesses times where a spring is held. A load is measured in no less: of that the rounding of places is a
+balance."""
 SHORTEST_SPRING = 1e-12
 """In sizes of the scene. A spring is taken to be no shorter, where its length limits a step."""
 LAST_TURN_RAD = 1e-9

@@ -2,7 +2,7 @@
 
 Balance and gaps are one system, of the object's motion and of the forces of the contacts (a saddle point),
 
-    (rho 1 + S) delta + A df = b - A f,    a_i . delta = g_i,    and t_i . delta = 0 where a contact sticks,
+    (rho 1 + S) delta + A df = b - A f,    a_i . delta = g_i,    t_i . delta = -s_i where what sticks slipped by s_i,
 
 with the friction of a contact that slides along its slip: along the way that it has slipped since the last rest, as in
 an implicit step. Friction turns with that way, and so it resists what slips aside: a peg that slides down its hole does
@@ -25,6 +25,7 @@ from cagepose.kernels.boundary.bend import curvatures, write_bend
 from cagepose.kernels.boundary.features import place_feature, place_feature_at
 from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_at, held_moved
 from cagepose.kernels.boundary.kept import meeting_kept
+from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.contact.contact_set import ContactSet, is_smooth, write_directions
 from cagepose.kernels.contact.coulomb_newton import (
     CARRYING_LIMIT,
@@ -33,18 +34,25 @@ from cagepose.kernels.contact.coulomb_newton import (
     STICKS,
     NewtonWorkspace,
     add_carrying,
+    n_forces,
 )
 from cagepose.kernels.contact.curvature import write_curvature
 from cagepose.kernels.contact.loads import write_load
 from cagepose.kernels.contact.metric import Frame, ScaledVector, frame_at, moved_along_twist, twist_of
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.quasistatic.pushing_out import is_fixed
 from cagepose.kernels.quasistatic.setting import Setting
 
 MOST_STEPS = 25
-LEAST_STIFFNESS = 1e-9
+LEAST_STIFFNESS = 1e-6
 """In lengths of the load over the size: what moves freely goes the shortest way."""
 ON_FACE, BALANCED = 4e-16, 1e-14
 """In sizes of the scene, and in lengths of the load's terms: rounding."""
+SOFT = 1e-8
+"""In stiffnesses: how much contacts give way across their faces in one step of Newton's method, so that those of which
+some would do share what they carry."""
+STUCK = 1e-14
+"""In sizes of the scene: what a contact that sticks may slip."""
 NEARLY_ON_FACE, NEARLY_BALANCED = 4e-13, 1e-11
 """Likewise: what will do where rounding does not let it come nearer."""
 
@@ -56,6 +64,10 @@ class RestWorkspace:
     ----------
     newton, curvature, load, delta
         The system, S, the load, and a step.
+    least_terms
+        Given: what the terms of the load are measured by where there is next to no load.
+    least_stiffness
+        What the stiffness is made greater by.
     slips
         How far each contact that counts, in their order, has slipped since the last rest, along its tangents, metres
         times their length. Given: up to the pose to start from.
@@ -65,6 +77,8 @@ class RestWorkspace:
     curvature: Annotated[FloatArray, MOST_FREEDOMS, MOST_FREEDOMS]
     load: ScaledVector
     delta: ScaledVector
+    least_terms: float
+    least_stiffness: float
     slips: Annotated[FloatArray, CARRYING_LIMIT, 2]
 
 
@@ -77,22 +91,23 @@ def follow_contact(
     position: Vector,
     quaternion: Quaternion,
     frame: Frame,
-) -> bool:
-    """Write where the features of a contact meet with the object at a pose, and how they bend; False: they do not."""
+) -> Meeting:
+    """Write where the features of a contact meet with the object at a pose, and how they bend; return the meeting."""
     row, moved = contacts.rows[i], held_moved(geometry, placement)
     cage, share = cage_at(geometry, row.cage_body), norm(vector_from(row.directions[1]))
     place_feature_at(moved, row.feature, position, matrix_from_quaternion(quaternion))
     place_feature(cage, row.cage_feature)
     places = placement.memory.places
-    met = meeting_kept(moved, row.feature, cage, row.cage_feature, row.angle, False, geometry.touch_m, places)
+    fixed = is_fixed(contacts, i)
+    met = meeting_kept(moved, row.feature, cage, row.cage_feature, row.angle, fixed, geometry.touch_m, places)
     if not met.is_one:
-        return False
+        return met
     arm = minus(met.place, position)
     row.gap = met.gap
     write_directions(row, met.normal, arm, share, frame)
     found = curvatures(moved, row.feature, cage, row.cage_feature, met, False)
     write_bend(found, met.normal, arm, frame.axes, frame.radii, contacts.bends[i])
-    return True
+    return met
 
 
 @kernel
@@ -109,7 +124,7 @@ def list_carrying(contacts: ContactSet, friction: float, work: RestWorkspace) ->
         if newton.n_carrying < 0:
             return -1
         newton.first_unknowns[newton.n_carrying - 1] = n
-        n += 3 if mode == STICKS else 1
+        n += n_forces(mode)
     return n
 
 
@@ -121,6 +136,15 @@ def along_slip(place: int, work: RestWorkspace) -> tuple[float, float, float]:
     if work.newton.modes[place] != SLIPS or size == 0.0:
         return 0.0, 0.0, 0.0
     return size, one / size, two / size
+
+
+@kernel
+def weights_of_turn(friction: float, slip: float) -> tuple[float, float]:
+    """Return by what the slip aside and the friction aside are multiplied where these are in proportion, as a friction
+    is to a slip: no more than one, as of two numbers one may be much greater.
+    """
+    greater = max(friction, slip)
+    return (friction / greater, slip / greater) if greater > 0.0 else (0.0, 1.0)
 
 
 @kernel
@@ -150,13 +174,17 @@ def write_system(contacts: ContactSet, friction: float, least: float, n: int, wo
                 m[k, first + which] = stiff * along
                 m[first + which, k] = stiff * columns[which, k]
                 m[k, n] -= along * forces[which]
+        m[first, first] = -SOFT * stiff
         m[first, n] = stiff * contacts.rows[i].gap
-        if size > 0.0:  # friction turns with the slip
-            resists = friction * forces[0] / size
-            for j in range(n_freedoms):
-                aside = one * columns[2, j] - two * columns[1, j]
-                for k in range(n_freedoms):
-                    m[j, k] += resists * aside * (one * columns[2, k] - two * columns[1, k])
+        for which in range(1, n_own):  # what sticks goes back to where it has slipped from
+            m[first + which, n] = -stiff * work.slips[place, which - 1]
+        if newton.modes[place] == SLIPS:  # friction turns with the slip
+            turning, turned = weights_of_turn(friction * forces[0], stiff * size)
+            for k in range(n_freedoms):
+                aside = one * columns[2, k] - two * columns[1, k]
+                m[k, first + 1] = stiff * aside
+                m[first + 1, k] = stiff * turning * aside
+            m[first + 1, first + 1] = -stiff * turned
     return stiff
 
 
@@ -174,9 +202,9 @@ def take_step(contacts: ContactSet, friction: float, stiff: float, n: int, work:
         columns, forces = contacts.rows[i].columns, contacts.states[i].forces
         for which in range(3 if mode == STICKS else 1):
             forces[which] += stiff * newton.changes[first + which]
+        for which in range(2 if mode != SLIDES else 0):
+            work.slips[place, which] += inner(columns[1 + which], work.delta, n_freedoms)
         if mode == SLIPS:
-            for which in range(2):
-                work.slips[place, which] += inner(columns[1 + which], work.delta, n_freedoms)
             _, one, two = along_slip(place, work)
             forces[1], forces[2] = friction * forces[0] * one, friction * forces[0] * two
 
@@ -212,12 +240,16 @@ def rest_of_mode(
         worst_m = 0.0
         for place in range(work.newton.n_carrying):
             i = work.newton.contacts[place]
-            if not follow_contact(setting.geometry, placement, contacts, i, position, quaternion, frame):
+            if not follow_contact(setting.geometry, placement, contacts, i, position, quaternion, frame).is_one:
                 return False, position, quaternion
             worst_m = max(worst_m, abs(contacts.rows[i].gap))
-        terms = write_load(setting.load, position, quaternion, frame, work.load)
+            if work.newton.modes[place] == STICKS:
+                slipped_m = math.sqrt(work.slips[place, 0] ** 2 + work.slips[place, 1] ** 2)
+                worst_m = max(worst_m, slipped_m * ON_FACE / STUCK)
+        terms = max(write_load(setting.load, position, quaternion, frame, work.load), work.least_terms)
         write_curvature(contacts, setting.load, position, quaternion, frame, False, work.curvature)
-        stiff = write_system(contacts, friction, LEAST_STIFFNESS * terms / setting.size_m, n, work)
+        work.least_stiffness = LEAST_STIFFNESS * terms / setting.size_m
+        stiff = write_system(contacts, friction, work.least_stiffness, n, work)
         for k in range(contacts.n_freedoms):
             work.delta[k] = work.newton.matrix[k, n]
         left = length(work.delta, contacts.n_freedoms) / terms

@@ -4,17 +4,35 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from cagepose.kernels.algebra.pose import Quaternion, rotated
+from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion, rotated
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.tolerances import KernelTolerances, scaled_tolerances
-from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, row, scaled, vector_from
-from cagepose.kernels.boundary.features import Bodies, Boundary, body_of, place_boundary
-from cagepose.kernels.boundary.geometry import Geometry, PlacedCage, Placement, deepest_overlap, held_at
+from cagepose.kernels.algebra.vector import (
+    Vector,
+    matrix_product,
+    minus,
+    norm,
+    plus,
+    row,
+    scaled,
+    times,
+    vector_from,
+)
+from cagepose.kernels.boundary.features import (
+    Bodies,
+    Boundary,
+    body_of,
+    number_of_bodies,
+    place_boundary,
+    place_turned,
+)
+from cagepose.kernels.boundary.geometry import Geometry, PlacedCage, Placement, cage_at, deepest_overlap, held_at
 from cagepose.kernels.boundary.refit import refit_vertices
 from cagepose.kernels.contact.friction import Friction, friction_of
 from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.outcome.drives import Drives
 
 
 class Part(NamedTuple):
@@ -53,6 +71,11 @@ class Cases(NamedTuple):
     bodies_cage
         Those of the cage: first what stands still, its points first, in the cage's frame; the same for all but for
         where single points are.
+    displaced
+        How each of these bodies is displaced from its place there, the same for all: position and quaternion,
+        (n_bodies, 7), in the cage's frame.
+    drives
+        How they are driven, the same for all.
     object_positions, object_quaternions
         The object's pose in the world at the start.
     sizes_m
@@ -71,6 +94,8 @@ class Cases(NamedTuple):
     cage_quaternions: FloatArray
     points_cage: FloatArray
     bodies_cage: Bodies
+    displaced: FloatArray
+    drives: Drives
     object_positions: FloatArray
     object_quaternions: FloatArray
     sizes_m: FloatArray
@@ -120,27 +145,35 @@ def quaternion_row(quaternions: FloatArray, index: int) -> Quaternion:
 
 
 @kernel
+def displacement_of(cases: Cases, geometry: Geometry, body: int) -> tuple[Vector, Quaternion]:
+    """Return how a body of the cage is displaced, as seen from the cage's middle."""
+    still, displaced = geometry.placed.poses[0], cases.displaced[body]
+    turned = (row(still, 1), row(still, 2), row(still, 3))
+    axis = times(turned, (displaced[4], displaced[5], displaced[6]))
+    quaternion = (displaced[3], axis[0], axis[1], axis[2])
+    origin, moved = row(still, 0), times(turned, vector_from(displaced))
+    return plus(moved, minus(origin, rotated(quaternion, origin))), quaternion
+
+
+@kernel
 def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
-    """Return how a case starts; its cage is written into ``cage``, what stands still at its place: the other bodies are
-    to be placed by the caller.
-    """
+    """Return how a case starts; its cage is written into ``cage``, each body at its place."""
     points = cases.points_cage[row_of(len(cases.points_cage), case)]
     turned = quaternion_row(cases.cage_quaternions, row_of(len(cases.cage_quaternions), case))
     parts, n_points = cases.bodies_cage.own.parts, len(points)
     # the origin of what follows is the middle of all elements of the cage that stand still
-    middle, n_still = (0.0, 0.0, 0.0), n_points
-    for point in range(n_points):
-        middle = plus(middle, row(points, point))
-    for which in range(n_points, len(parts)):
+    middle, n_still = (0.0, 0.0, 0.0), 0
+    for which in range(len(parts)):
         if parts[which].body == 0:
-            middle, n_still = plus(middle, vector_from(parts[which].middle)), n_still + 1
+            place = row(points, which) if which < n_points else vector_from(parts[which].middle)
+            middle, n_still = plus(middle, place), n_still + 1
     middle = scaled(middle, 1.0 / max(n_still, 1))
     # points, or the boundary, turned about it
     for point in range(len(cage.points_world)):
         placed = rotated(turned, minus(row(points, point), middle))
         for k in range(3):
             cage.points_world[point, k] = placed[k]
-    bodies = Bodies(own_boundary(cases.bodies_cage.own, points, cage), cases.bodies_cage.first_nodes)
+    bodies = Bodies(own_boundary(cases.bodies_cage, points, cage), cases.bodies_cage.first_nodes)
     place_boundary(body_of(bodies, cage.placing, 0), scaled(rotated(turned, middle), -1.0), turned)
     # the object beside it
     cage_position = row(cases.cage_positions, row_of(len(cases.cage_positions), case))
@@ -149,8 +182,11 @@ def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
     quaternion = quaternion_row(cases.object_quaternions, row_of(len(cases.object_quaternions), case))
     size_m = cases.sizes_m[row_of(len(cases.sizes_m), case)]
     tolerances = scaled_tolerances(cases.tolerances, size_m)
+    geometry = Geometry(part.boundary, bodies, cage.placing, tolerances.touch_m)
+    for body in range(1, number_of_bodies(bodies)):
+        place_displaced(geometry, body, *displacement_of(cases, geometry, body))
     return Start(
-        Geometry(part.boundary, bodies, cage.placing, tolerances.touch_m),
+        geometry,
         plus(minus(position, origin), rotated(quaternion, part.center_object)),
         quaternion,
         origin,
@@ -162,8 +198,17 @@ def start_of(case: int, part: Part, cases: Cases, cage: PlacedCage) -> Start:
 
 
 @kernel
-def own_boundary(boundary: Boundary, points: FloatArray, cage: PlacedCage) -> Boundary:
-    """Return the boundary of a cage whose single points are elsewhere, (n_points, 3), metres."""
+def place_displaced(geometry: Geometry, body: int, position: Vector, quaternion: Quaternion) -> None:
+    """Place a body of the cage, displaced from where it would be if it stood as what stands still does."""
+    still = geometry.placed.poses[0]
+    rotation = matrix_product(matrix_from_quaternion(quaternion), (row(still, 1), row(still, 2), row(still, 3)))
+    place_turned(cage_at(geometry, body), plus(position, rotated(quaternion, row(still, 0))), rotation)
+
+
+@kernel
+def own_boundary(bodies: Bodies, points: FloatArray, cage: PlacedCage) -> Boundary:
+    """Return the boundary of cages whose single points are elsewhere, (n_points, 3), metres."""
+    boundary = bodies.own
     for i in range(len(boundary.features)):
         cage.features[i] = boundary.features[i]  # type: ignore[index]
     for i in range(len(boundary.parts)):
@@ -185,8 +230,9 @@ def own_boundary(boundary: Boundary, points: FloatArray, cage: PlacedCage) -> Bo
         for k in range(3):
             is_elsewhere = is_elsewhere or feature.point[k] != points[point, k]
             feature.point[k] = own.parts[point].middle[k] = points[point, k]
-    if is_elsewhere:
-        refit_vertices(own)
+    for body in range(number_of_bodies(bodies) if is_elsewhere else 0):
+        nodes = cage.nodes[bodies.first_nodes[body] : bodies.first_nodes[body + 1]]
+        refit_vertices(nodes, own.features)
     return own
 
 

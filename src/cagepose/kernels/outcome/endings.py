@@ -30,6 +30,9 @@ class Endings(NamedTuple):
         Code where a quasistatic phase comes to rest, (n, n_phases).
     positions, quaternions
         The object's pose in the world, (n, n_phases, 3) metres and (n, n_phases, 4).
+    shares, greatest, least_jams
+        How much of a drive is done, (n, n_phases); the greatest sum of the drivers' forces along their ways, and the
+        least friction with which the object could jam: NaN without a drive.
     touching
         Which of the cage's points and shapes touch, (n, n_phases, n_elements).
     """
@@ -39,6 +42,9 @@ class Endings(NamedTuple):
     n_steps: NDArray[np.int64]
     positions: FloatArray
     quaternions: FloatArray
+    shares: FloatArray
+    greatest: FloatArray
+    least_jams: FloatArray
     touching: NDArray[np.bool_]
 
 
@@ -50,6 +56,9 @@ def empty_endings(n_runs: int, n_phases: int, n_elements: int) -> Endings:
         np.zeros((n_runs, n_phases), np.int64),
         np.full((n_runs, n_phases, 3), np.nan),
         np.full((n_runs, n_phases, 4), np.nan),
+        np.zeros((n_runs, n_phases)),
+        np.full((n_runs, n_phases), np.nan),
+        np.full((n_runs, n_phases), np.nan),
         np.zeros((n_runs, n_phases, n_elements), np.bool_),
     )
 

@@ -31,6 +31,13 @@ class PhaseRecord:
         Scaled twists along which the load does not tell poses apart, rows.
     motion, along, through, pitch
         The motion that begins, if the object moves or may move.
+    share, driving, greatest, greatest_at
+        How much of its drive is done; the sum of the drivers' forces along their ways at the end, and where it is
+        greatest, after which share.
+    work, rubbed, lost
+        Work of the drivers, what friction took of it, and what was lost where the object snapped.
+    least_jam
+        The least coefficient of friction with which the object could jam somewhere along the drive; inf: none.
     n_events, n_steps, n_contacts
         How many rows of the outcome are written after this phase.
     """
@@ -49,6 +56,14 @@ class PhaseRecord:
     along: Annotated[FloatArray, 3]
     through: Annotated[FloatArray, 3]
     pitch: float
+    share: float
+    driving: float
+    greatest: float
+    greatest_at: float
+    work: float
+    rubbed: float
+    lost: float
+    least_jam: float
     n_events: int
     n_steps: int
     n_contacts: int
@@ -128,6 +143,9 @@ class Outcome(NamedTuple):
         n_elements).
     path
         Position and quaternion of the object after each step, (n_steps, 7).
+    drivers, displaced
+        What the driver of each body of the cage does at the end of each phase, and how the body is displaced then, in
+        the cage's frame, (n_phases, n_bodies, 7); see `cagepose.kernels.driven.bodies`.
     steps, order
         Every step as the method has noted it, from which it can be made again; see `Trace`.
     """
@@ -139,6 +157,8 @@ class Outcome(NamedTuple):
     touching: NDArray[np.bool_]
     hit: NDArray[np.bool_]
     path: FloatArray
+    drivers: FloatArray
+    displaced: FloatArray
     steps: Rows[StepRecord]
     order: NDArray[np.int64]
 
@@ -148,6 +168,7 @@ def empty_outcome(geometry: Geometry, n_phases: int, n_steps: int, n_ordered: in
     touching the method keeps, all or none.
     """
     n_events, n_elements = n_phases * n_steps, most_elements(geometry)
+    n_bodies = len(geometry.cage.first_nodes) - 1
     return Outcome(
         np.zeros(4, np.int64),
         empty_rows(PhaseRecord, n_phases),
@@ -156,6 +177,8 @@ def empty_outcome(geometry: Geometry, n_phases: int, n_steps: int, n_ordered: in
         np.zeros((n_events, n_elements), np.bool_),
         np.zeros((n_events, n_elements), np.bool_),
         np.zeros((n_events, 7)),
+        np.zeros((n_phases, n_bodies, 7)),
+        np.zeros((n_phases, n_bodies, 7)),
         empty_rows(StepRecord, n_events),
         np.zeros((n_events, n_ordered), np.int64),
     )

@@ -13,9 +13,11 @@ TRAVEL, TURN, SCREW, NONE = 0, 1, 2, 3
 """Codes of motions: the index into `MOTION_NAMES`; NONE has no name."""
 MOTION_NAMES: tuple[Literal["travel", "turn", "screw"], ...] = ("travel", "turn", "screw")
 
-STABLE, ESCAPES, SPINS, CYCLING, LIMIT, RESTS, STALLED = 0, 1, 2, 3, 4, 5, 6
+STABLE, ESCAPES, SPINS, CYCLING, LIMIT, RESTS, STALLED, BLOCKED, JAMS, STOPS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
 """Codes of how a phase ended: the index into `VERDICT_NAMES`."""
-VERDICT_NAMES: tuple[Literal["stable", "escapes", "spins", "cycling", "limit", "rests", "stalled"], ...] = (
+VERDICT_NAMES: tuple[
+    Literal["stable", "escapes", "spins", "cycling", "limit", "rests", "stalled", "blocked", "jams", "stops"], ...
+] = (
     "stable",
     "escapes",
     "spins",
@@ -23,6 +25,9 @@ VERDICT_NAMES: tuple[Literal["stable", "escapes", "spins", "cycling", "limit", "
     "limit",
     "rests",
     "stalled",
+    "blocked",
+    "jams",
+    "stops",
 )
 
 
@@ -56,6 +61,10 @@ class StepRecord:
         Whether it begins only because a contact is on an edge.
     start_position, start_quaternion
         Pose before the step.
+    share, driving
+        How much of the phase's drive is done after it, and the sum of the drivers' forces along their ways there.
+    could_jam
+        Whether forces could stand against the drive there, whatever they are.
     turn_step, n_still, n_refined
         What else a quasistatic step began from, see `cagepose.kernels.quasistatic.step.State`.
     """
@@ -72,6 +81,9 @@ class StepRecord:
     is_at_edge: bool
     start_position: Annotated[FloatArray, 3]
     start_quaternion: Annotated[FloatArray, 4]
+    share: float
+    driving: float
+    could_jam: bool
     turn_step: float
     n_still: int
     n_refined: int

@@ -92,10 +92,16 @@ def beyond_border(
     """
     contact, moved = contacts.rows[i], held_moved(geometry, placement)
     cage, one, other = cage_at(geometry, contact.cage_body), contact.feature, contact.cage_feature
-    kind, cage_kind = geometry.held.features[one].kind, cage.own.features[other].kind
+    place_after(held_at(geometry, placement), one, motion, amount, moved)
+    return beyond_end(moved, one, cage, other, touch_m)
+
+
+@kernel
+def beyond_end(moved: PlacedBoundary, one: int, cage: PlacedBoundary, other: int, touch_m: float) -> float:
+    """As `beyond_border`, of two features that are placed."""
+    kind, cage_kind = moved.features[one].kind, cage.features[other].kind
     if not (kind == FACE or cage_kind == FACE) or kind == CIRCLE or cage_kind == CIRCLE:
         return math.inf
-    place_after(held_at(geometry, placement), one, motion, amount, moved)
     if kind == FACE:
         beyond = beyond_face(moved, one, vector_from(cage.features[other].point))
     else:

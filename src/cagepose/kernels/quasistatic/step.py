@@ -68,10 +68,10 @@ from cagepose.kernels.quasistatic.tipping import may_tip
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 from cagepose.kernels.stability.strong import OTHER_FOUND, other_onset_on_circles
 
-RULE_NAMES = ("free", "slide", "pivot", "held", "stalled", "escapes")
-FREE, SLIDE, PIVOT, HELD, STUCK, AWAY = 0, 1, 2, 3, 4, 5
+RULE_NAMES = ("free", "slide", "pivot", "held", "stalled", "escapes", "driven")
+FREE, SLIDE, PIVOT, HELD, STUCK, AWAY, DRIVEN = 0, 1, 2, 3, 4, 5, 6
 """No contact carries; those that carry slide; one of them sticks; the contacts hold the object; nothing was found;
-nothing is ahead."""
+nothing is ahead; a body of the cage moves."""
 
 STIFF = 0.25
 """Curvature times step above which the explicit step would no longer follow the path: then it is made implicit."""
@@ -307,7 +307,8 @@ def write_step(
     trace = work.trace
     record = trace.rows[step]
     record.rule, record.motion, record.note, record.is_at_edge = rule, motion, PLAIN, is_at_edge
-    record.distance = 0.0  # told by the poses
+    record.distance = record.share = record.driving = 0.0  # the way is told by the poses
+    record.could_jam = False
     for k in range(3):
         record.position[k] = position[k]
     for k in range(4):

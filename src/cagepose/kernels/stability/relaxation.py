@@ -63,6 +63,8 @@ QUARTER_TURNS = (1.0, 0.0, -1.0, 0.0, 1.0)
 TWISTS_OF_NODE = 12
 """So many twists are looked for at one node; then it is divided, which tells more."""
 MOST_GENERATORS = 80
+BESIDE = -3
+"""The place of the other load among those of forces; that of the load is -1."""
 
 
 class Relaxation:
@@ -76,8 +78,8 @@ class Relaxation:
         The contacts in question: a "place" is an index of this.
     wrenches
         Of each: scaled wrenches of its normal and its two tangents, the normal of length one.
-    load
-        Of length one.
+    load, beside, has_beside
+        Of length one; and another one that may act to any extent, if there is one.
     is_smooth
         Whether each has no friction.
     openings, slips, starts, widths, edges
@@ -107,6 +109,8 @@ class Relaxation:
     is_smooth: Annotated[IntArray, CONTACT_LIMIT]
     wrenches: Annotated[FloatArray, CONTACT_LIMIT, 3, MOST_FREEDOMS]
     load: ScaledVector
+    beside: ScaledVector
+    has_beside: bool
     openings: Annotated[IntArray, CONTACT_LIMIT]
     slips: Annotated[IntArray, CONTACT_LIMIT]
     starts: Annotated[FloatArray, CONTACT_LIMIT]
@@ -148,6 +152,7 @@ def take_contacts(contacts: ContactSet, b: FloatArray, work: Relaxation) -> bool
     size = length(b, n)
     for k in range(n):
         work.load[k] = b[k] / size
+    work.has_beside = False
     return True
 
 
@@ -188,8 +193,10 @@ def steepest_friction(place: int, vector: FloatArray, work: Relaxation) -> tuple
 
 @kernel
 def most_driven(friction: float, vector: FloatArray, work: Relaxation) -> float:
-    """Return the most that a unit normal force, with its friction, or the load turned round lies along a vector."""
+    """Return the most that a unit normal force, with its friction, or a load turned round lies along a vector."""
     most = -inner(work.load, vector, work.n_freedoms)
+    if work.has_beside:
+        most = max(most, -inner(work.beside, vector, work.n_freedoms))
     for place in range(work.n_places):
         if work.openings[place] != OPENS:
             along = steepest_friction(place, vector, work)[0]
@@ -248,6 +255,9 @@ def add_generator(friction: float, number: int, work: Relaxation) -> int:
     along = -inner(work.load, passive.residual, work.n_freedoms)
     if along > most:
         best, most = -1, along
+    along = -inner(work.beside, passive.residual, work.n_freedoms) if work.has_beside else 0.0
+    if along > most:
+        best, most = BESIDE, along
     for place in range(work.n_places):
         if work.openings[place] == OPENS:
             continue
@@ -260,7 +270,7 @@ def add_generator(friction: float, number: int, work: Relaxation) -> int:
         return -1
     work.places[number] = best
     for k in range(work.n_freedoms):
-        work.generator[k] = -work.load[k]
+        work.generator[k] = -work.beside[k] if best == BESIDE else -work.load[k]
     if best >= 0:
         along, one, two = steepest_friction(best, passive.residual, work)
         used = (1.0 + WIDER_CONES) * friction if along > 0.0 else friction
@@ -369,9 +379,9 @@ def read_forces(work: Relaxation) -> None:
     for k in range(passive.used):
         label = passive.labels[k]
         place, x = work.places[label], passive.x[k]
-        if place < 0:
+        if place == -1:
             work.scale = x
-        else:
+        elif place >= 0:
             work.normal_forces[place] += x
             work.tangential_forces[place, 0] += x * work.directions[label, 0]
             work.tangential_forces[place, 1] += x * work.directions[label, 1]

@@ -222,11 +222,26 @@ def other_onset(
 
     The forces of the contacts are lost.
     """
-    work = tree.relaxation
-    tree.n_nodes = 0
-    if not take_contacts(contacts, b, work):
+    if not take_contacts(contacts, b, tree.relaxation):
         return NOT_SHOWN
-    work.n_cuts = 0
+    return search_modes(contacts, friction, b, True, tree, newton, system)
+
+
+@kernel
+def search_modes(
+    contacts: ContactSet,
+    friction: float,
+    b: FloatArray,
+    is_tried: bool,
+    tree: ModeTree,
+    newton: NewtonWorkspace,
+    system: System,
+) -> int:
+    """Search all sets of modes of contacts that are taken already; see `other_onset`. ``is_tried``: motions that come
+    near to the law are tried as another onset.
+    """
+    work = tree.relaxation
+    tree.n_nodes = work.n_cuts = 0
     n_waiting = add_node(-1, -1, UNDECIDED, 0.0, 0.0, 0, tree)
     while n_waiting > 0:
         n_waiting -= 1
@@ -242,7 +257,7 @@ def other_onset(
             for k in range(contacts.n_freedoms):
                 tree.twists[node, k] = work.twist[k]
             continue
-        if is_near(friction, work) and is_witnessed(contacts, friction, b, tree, newton):
+        if is_tried and is_near(friction, work) and is_witnessed(contacts, friction, b, tree, newton):
             return OTHER_FOUND
         place, is_opening = worst_contact(friction, work)
         if place < 0 or tree.n_nodes > NODE_LIMIT - FIRST_SECTORS - 1:

@@ -13,7 +13,7 @@ from cagepose.model.boundary.blocks import NOWHERE, Block, Row, block_of, pierce
 from cagepose.model.boundary.convex_pieces import ConvexPiece, piece_of_box, piece_of_hull
 from cagepose.model.boundary.covers import united
 from cagepose.model.boundary.joined_surfaces import joined_surface, surface_groups
-from cagepose.model.boundary.packed import packed
+from cagepose.model.boundary.packed import nothing, packed
 from cagepose.model.boundary.union import union_of
 from cagepose.model.boundary.union_block import union_block
 from cagepose.model.box import Box
@@ -29,7 +29,7 @@ AROUND = 50.0
 
 
 def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary:
-    """Return the boundary of a body in its frame; a single point (3,) is a part, too.
+    """Return the boundary of a body in its frame; a single point (3,) is a part, too. A body may have no parts.
 
     Of polyhedra it is that of their union: what lies inside another one is no feature, and a seam between flush faces
     is no edge. Round parts and holes have all of their features, and these have covers.
@@ -42,6 +42,8 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
         What is this close is at one place, metres.
     """
     every = list(parts)
+    if not every:
+        return nothing()
     solids = [part for part in every if isinstance(part, Shape) and not isinstance(part, Hole)]
     holes = [part for part in every if isinstance(part, Hole)]
     blocks, polyhedra, pieces = list[Block](), dict[int, Shape](), dict[int, ConvexPiece]()

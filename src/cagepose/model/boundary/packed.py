@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import dtype_of
-from cagepose.kernels.boundary.features import CIRCLE, FACE, VERTEX, Bound, Boundary, Feature
+from cagepose.kernels.boundary.features import CIRCLE, FACE, NO_BOUNDARY, VERTEX, Bound, Boundary, Feature
 from cagepose.kernels.boundary.tree import EDGES, FACES, VERTICES, Node
 from cagepose.model.boundary.blocks import Block
 from cagepose.model.boundary.body_parts import body_parts
@@ -67,6 +67,12 @@ def packed(blocks: Sequence[Block], parts: Sequence[Shape | FloatArray], touch_m
         nodes.view(dtype_of(Node)),
         planes,
     )
+
+
+def nothing() -> Boundary:
+    """Return the boundary of a body without parts: its trees are leaves without features."""
+    _, leaf = _tree(np.zeros((0, 2, 3)), LEAF, 0, 3)
+    return NO_BOUNDARY._replace(nodes=np.concatenate([leaf] * 3).view(dtype_of(Node)))
 
 
 def _boxes(blocks: Sequence[Block]) -> tuple[FloatArray, IntArray]:

@@ -10,6 +10,7 @@ from PIL import Image, ImageDraw, ImageFont
 from cagepose.files.words import LengthWords
 from cagepose.runs.run import CONTRADICTED, Run
 from cagepose.studies.ending import Kind, run_kind
+from cagepose.views.drive_words import share_words
 from cagepose.views.viewer.labels import Pair, laid_out
 from cagepose.views.viewer.look import PAPER
 from cagepose.views.viewer.playback import Film, Playback, Shot
@@ -87,7 +88,8 @@ class Caption:
         words = LengthWords(self.shown.length_unit, self.shown.scene.size_m)
         motion = row.seen
         what = None if motion is None else f"{motion.kind} {words.amount(motion)}"
-        told = ", ".join(word for word in (row.event.rule, what, row.verdict) if word)
+        far = f"{share_words(shot.share)} of the drive" if shot.share else None
+        told = ", ".join(word for word in (row.event.rule, what, far, row.verdict) if word)
         return f"{run.phases[row.phase].name}, event {shot.row + 1}: {told}"
 
     def _write_exaggeration(self, pen: ImageDraw.ImageDraw, times: int) -> None:

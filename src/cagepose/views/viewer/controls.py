@@ -13,6 +13,7 @@ from cagepose.files.parameters import evaluated
 from cagepose.files.scene_file import SceneFile, SceneText
 from cagepose.files.units import from_metres
 from cagepose.model.methods import METHODS
+from cagepose.runs.driven_cage import cage_at_start
 from cagepose.runs.methods import chosen_method
 from cagepose.views.viewer.surface import nearest_on_object
 
@@ -87,7 +88,7 @@ class _Maker:
         self.unit = scene_file.length_unit
         self.size = float(from_metres(self.scene.size_m, self.unit))
         held = self.scene.object
-        nearest = nearest_on_object(held, held.pose_world_object, self.scene.cage)
+        nearest = nearest_on_object(held, held.pose_world_object, cage_at_start(self.scene.cage))
         gaps = np.linalg.norm(nearest.places_world - nearest.feet_world, axis=1)
         play_m = float(np.median(gaps)) if len(gaps) else 0.0
         self.play = float(from_metres(max(play_m, LEAST_PLAY * self.scene.size_m), self.unit))

@@ -15,16 +15,19 @@ from cagepose.model.pose import Pose
 from cagepose.model.shapes import Capsule, Shape, Sphere, Turned
 from cagepose.runs.cases import contact_friction
 from cagepose.runs.changes import Change, changes_of
+from cagepose.runs.driven_cage import CageAt
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
-from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES
+from cagepose.runs.on_the_way import DRIVEN
+from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, STOPPED
 from cagepose.studies.acts import Act
 from cagepose.studies.comparison import ENDS, same_pose
 from cagepose.studies.ending import run_kind, verdict_kind
+from cagepose.views.drive_words import STOPS, along_drawn, drive_data, how_far, share_words
 from cagepose.views.solids import Solid, solid_of
 from cagepose.views.viewer import look
 from cagepose.views.viewer.playback import Playback, Row, Shot, Touches
-from cagepose.views.viewer.stage import EASED_SHARE, EXAGGERATIONS, MOST_ADDED, Stage
+from cagepose.views.viewer.stage import EASED_SHARE, EXAGGERATIONS, MOST_ADDED, MOST_WAY, Stage
 
 AMOUNT_DIGITS = 4
 """A list beside a picture is for reading; saved runs have all digits."""
@@ -50,6 +53,8 @@ class _Writer:
         self.words = LengthWords(shown.length_unit, shown.run.scene.size_m)
         self.touches = list(dict.fromkeys(shot.touches for shot in shown.shots))
         self.which = {touches: index for index, touches in enumerate(self.touches)}
+        self.cages = list(dict.fromkeys(shot.cage for shot in shown.shots))
+        self.which_cage = {cage: index for index, cage in enumerate(self.cages)}
 
     def document(self) -> dict[str, Any]:
         run, stage = self.run, self.stage
@@ -66,6 +71,7 @@ class _Writer:
             "radius": stage.radius,
             "shotsPerMotion": self.shown.shots_per_motion,
             "mostAdded": MOST_ADDED,
+            "mostWay": MOST_WAY,
             "look": look.document(),
             "exaggerations": list(EXAGGERATIONS),
             "ease": EASED_SHARE * self.shown.shots_per_motion,
@@ -73,6 +79,8 @@ class _Writer:
             "reach": stage.reach_m / stage.size_m,
             "names": list(run.scene.cage.element_names),
             "points": [_numbers(point) for point in stage.place(self.shown.points_world)],
+            "elementBodies": list(run.scene.cage.element_bodies),
+            "cages": [self._cage(cage) for cage in self.cages],
             "gaps": {
                 phase.reference: [_numbers(gap / stage.size_m) for gap in stage.gaps_world(phase.reference)]
                 for phase in stage.phases
@@ -81,8 +89,15 @@ class _Writer:
             "greatestForce": self._greatest_force(),
             "forceUnit": self._force_unit(),
             "phases": [
-                {**view._asdict(), "name": phase.name, "loads": [self._load(act) for act in acts]}
-                for phase, view, acts in zip(run.phases, stage.phases, self.shown.loads, strict=True)
+                {
+                    **view._asdict(),
+                    "name": phase.name,
+                    "loads": [self._load(act) for act in acts],
+                    "drive": drive_data(run, index, self.shown.length_unit),
+                }
+                for index, (phase, view, acts) in enumerate(
+                    zip(run.phases, stage.phases, self.shown.loads, strict=True)
+                )
             ],
             "rows": list(map(self._row, self.shown.rows, changes_of(run))),
             "touches": [self._touch(touches) for touches in self.touches],
@@ -91,8 +106,8 @@ class _Writer:
         }
 
     def _solids(self) -> dict[str, Any]:
-        """The parts and holes of the object in its frame, and the shapes and holes of the cage in the world, by the
-        indices of their forms: parts of the same kind and size have the same one.
+        """The parts and holes of the object in its frame, and the shapes and holes of the cage in the world at the
+        start, by the indices of their forms: parts of the same kind and size have the same one.
         """
         scene, forms = self.run.scene, dict[Solid, Shape]()
         solids: dict[str, list[dict[str, Any]]] = {}
@@ -142,9 +157,23 @@ class _Writer:
             return {"size": _numbers(shape.size_m / size_m)}
         return {"vertices": _rounded(solid.mesh.vertices_m / size_m), "triangles": solid.mesh.triangles.tolist()}
 
+    def _cage(self, cage: CageAt) -> list[dict[str, Any]]:
+        """How what stands still, then each body, is displaced from its start."""
+        middle = self.stage.middle_world
+        return [
+            {
+                "position": _numbers(self.stage.place(displaced.transform(middle))),
+                "quaternion": _numbers(displaced.quaternion_wxyz),
+            }
+            for displaced in cage.displaced
+        ]
+
     def _shot(self, shot: Shot) -> dict[str, Any]:
         pose = shot.pose_world_object
         return {
+            "cage": self.which_cage[shot.cage],
+            "share": shot.share,
+            "along": along_drawn(self.run, shot.phase, shot.along, self.shown.length_unit),
             "row": shot.row,
             "phase": shot.phase,
             "position": _numbers(self.stage.place(pose.position_m)),
@@ -168,7 +197,8 @@ class _Writer:
 
     def _places(self, touches: Touches) -> list[list[float]] | None:
         scene = self.run.scene
-        return _rounded(self.stage.place(touches.places_world)) if scene.cage.shapes or scene.cage.holes else None
+        has_points_alone = not (scene.cage.shapes or scene.cage.holes or scene.cage.bodies)
+        return None if has_points_alone else _rounded(self.stage.place(touches.places_world))
 
     def _pairs(self, touches: Touches) -> list[tuple[str, str]]:
         names = self.run.scene.cage.element_names
@@ -185,6 +215,7 @@ class _Writer:
             "rule": row.event.rule,
             "motion": "" if motion is None else motion.kind,
             "amount": "" if motion is None else self.words.amount(motion, AMOUNT_DIGITS),
+            "drive": f"to {share_words(row.event.share)} of the drive" if row.event.rule == DRIVEN else "",
             "hit": list(row.event.hit),
             "reached": list(change.reached),
             "left": list(change.left),
@@ -215,6 +246,7 @@ class _Writer:
             "direction": _numbers(act.direction),
             "follows": act.follows,
             "to": None if act.to_world_m is None else _numbers(self.stage.place(act.to_world_m)),
+            "body": act.body,
         }
 
     def _greatest_force(self) -> float:
@@ -231,11 +263,14 @@ def notes(shown: Playback) -> list[str]:
     ends = []
     for phase in run.phases:
         proof = phase.proof
+        far = how_far(phase, shown.length_unit)
         if phase.verdict in AT_REST:
-            ends.append(f"{phase.name}: {phase.verdict} ({proof.stability or 'moves'}): {proof.reason}")
+            ends.append(f"{phase.name}: {phase.verdict}{far} ({proof.stability or 'moves'}): {proof.reason}")
+        elif phase.verdict in STOPPED:
+            ends.append(f"{phase.name}: {phase.verdict}{far}: {STOPS[phase.verdict]}")
         else:
             where = f" after event {len(shown.rows)}: {_failing(shown)}" if phase.verdict in FAILURES else ""
-            ends.append(f"{phase.name}: {phase.verdict}{where}")
+            ends.append(f"{phase.name}: {phase.verdict}{far}{where}")
     return [*ends, *(f"Warning: {warning}" for warning in run.warnings)]
 
 

@@ -116,7 +116,7 @@ class PictureMaker:
         now = self._look(last)
         found.append(self.stage.place(self.stage.points(now)))
         for act in self.shown.loads[last.phase] if len(shots) < len(self.shown.rows) else sum(self.shown.loads, ()):
-            found.append(np.stack(self._ends(act, end)))
+            found.append(np.stack(self._ends(act, end, now)))
         if last.touches.forces_object is not None:
             places = self.places(last)
             forces = last.touches.forces_object @ end.rotation.T
@@ -124,8 +124,9 @@ class PictureMaker:
         shifts = self.stage.shifts(now)[len(self.shown.points_world) :]
         for body, shift in zip(self.stage.bodies_world, shifts, strict=False):
             found.append(self.stage.place(body + shift))
-        cage = self.scene.cage.pose_world_cage
-        found += [self.stage.place(cage.transform(vertices_of([hole]))) for hole in self.scene.cage.holes]
+        found += [self.stage.place(body) for shot in shots for body in self.stage.driven_bodies(self._look(shot))]
+        for which, hole in enumerate(self.scene.cage.holes, len(self.scene.cage.shapes)):
+            found.append(self.stage.place(now.cage.pose_of_cage(which).transform(vertices_of([hole]))))
         places = np.concatenate(found)
         return places if not self.is_near else self._near_cage(places, last, now)
 
@@ -174,11 +175,8 @@ class PictureMaker:
 
     def _cage_poses(self) -> list[Pose]:
         """Return where the cage's shapes and holes are shown."""
-        cage, shifts = self.scene.cage, self.stage.shifts(self.now)[len(self.shown.points_world) :]
-        return [
-            Pose(shift) @ cage.pose_world_cage @ shape.pose_body_shape
-            for shift, shape in zip(shifts, (*cage.shapes, *cage.holes), strict=True)
-        ]
+        shifts = self.stage.shifts(self.now)[len(self.shown.points_world) :]
+        return [Pose(shift) @ self.now.cage.pose_of_shape(which) for which, shift in enumerate(shifts)]
 
     def _draw_bodies(self, pose: Pose) -> None:
         held, cage = self.scene.object, self.scene.cage
@@ -211,11 +209,18 @@ class PictureMaker:
             self.bodies.glaze(body, placed, PAINT["cage"], self.cage_holes, look.GLASS)
 
     def _draw_start(self) -> None:
-        """Draw where the object was in the first shot that must be seen."""
+        """Draw where the object, and bodies that have been driven since, were in the first shot that must be seen."""
         start = self.shown.shots[self.seen[0]]
-        pose = self.stage.pose(start.pose_world_object, self._look(start))
+        before = self._look(start)
+        pose = self.stage.pose(start.pose_world_object, before)
         for part in self.scene.object.parts:
             self.bodies.edges(part, pose @ part.pose_body_shape, PAINT["ghost"])
+        first = len(self.shown.points_world)
+        shifts = self.stage.shifts(before)[first:]
+        for which, body in enumerate(self.scene.cage.shapes):
+            if self.now.cage.of_element(first + which) is not before.cage.of_element(first + which):
+                placed = Pose(shifts[which]) @ before.cage.pose_of_shape(which)
+                self.bodies.edges(body, placed, PAINT["ghost"])
 
     def _draw_points(self, shot: Shot, pose: Pose) -> None:
         touching = set(shot.touches.points.tolist())
@@ -270,7 +275,7 @@ class PictureMaker:
 
     def _draw_loads(self, shot: Shot, pose: Pose) -> None:
         for act in self.shown.loads[shot.phase]:
-            start, end = self._ends(act, pose)
+            start, end = self._ends(act, pose, self.now)
             if act.kind == "spring":
                 line = coil(start, end, look.COIL * self.eye.pixel(start))
                 for one, other in itertools.pairwise(line):
@@ -281,13 +286,13 @@ class PictureMaker:
                 self.marks.arrow(start, start + look.SECOND_HEAD * (end - start), 1.3 * look.ROD, PAINT["load"])
             self._name(end if act.kind == "spring" else start, act.name, is_loud=True)
 
-    def _ends(self, act: Act, pose: Pose) -> tuple[FloatArray, FloatArray]:
+    def _ends(self, act: Act, pose: Pose, now: Look) -> tuple[FloatArray, FloatArray]:
         """Return where an act's arrow starts and ends: that of a force ends where it acts, that of a moment starts at
         the centre of gravity. A spring is drawn for `LONGEST_SPRING` at most.
         """
-        at, direction = self.stage.place(pose.transform(act.at_object_m)), act.direction_at(pose)
+        at, direction = self.stage.place(pose.transform(act.at_object_m)), act.direction_at(pose, now.cage)
         if act.to_world_m is not None:
-            length = float(np.linalg.norm(self.stage.place(act.to_world_m) - at))
+            length = float(np.linalg.norm(self.stage.place(act.end_world(now.cage)) - at))
             return at, at + min(length, look.LONGEST_SPRING) * direction
         arrow = look.LOAD * self.eye.pixel(at) * direction
         return (at, at + arrow) if act.kind == "moment" else (at - arrow, at)
@@ -321,5 +326,6 @@ class PictureMaker:
 
     def _middle(self, body: int) -> FloatArray:
         """Return the middle of what is shown of a shape of the cage, or the mouth of a hole behind these, (3,)."""
-        shift = self.stage.shifts(self.now)[len(self.shown.points_world) + body]
-        return self.stage.place(self.stage.middles_world[body] + shift)
+        element = len(self.shown.points_world) + body
+        middle = self.now.cage.of_element(element).transform(self.stage.middles_world[body])
+        return self.stage.place(middle + self.stage.shifts(self.now)[element])

@@ -15,13 +15,17 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.changes import Seen, as_seen
-from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
+from cagepose.runs.driven_cage import CageAt, cage_at, cage_at_start
+from cagepose.runs.on_the_way import is_driven_on, row_on_curve, share_before, value_at
+from cagepose.runs.run import Contact, Event, Frame, Motion, PhaseRun, Run
 from cagepose.studies.acts import Act, acts_of
 from cagepose.studies.touching import PlacesOfContact, TouchFinder
 from cagepose.views.viewer.surface import nearest_on_object
 
 SHOTS_PER_MOTION = 24
 """One second of film for each motion."""
+MOTIONS_PER_DRIVE = 4
+"""A whole drive takes as long as so many motions."""
 MOST_SHOTS = 4_800
 """A run has at most so many shots, so that each of thousands of motions has fewer. A failed run of 3,000 took 29 MB and
 6 s as a page."""
@@ -73,16 +77,22 @@ class Shot:
         Index of the event that is going on; -1 at the start.
     phase
         Index of the phase.
-    pose_world_object
-        Where the object is.
+    pose_world_object, cage
+        Where the object is, and where the bodies of the cage are.
     touches
-        What touches it there; of a cage of points one and the same for all shots on the way of a motion.
+        What touches there; of a cage of points without bodies one and the same for all shots on the way of a motion.
+    share, along
+        How much of the phase's drive is done, and the sum of the drivers' forces along their ways; None: none is
+        driven yet.
     """
 
     row: int
     phase: int
     pose_world_object: Pose
+    cage: CageAt
     touches: Touches
+    share: float = 0.0
+    along: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,11 +128,11 @@ class Film:
     scene, length_unit
         What is shown, and the unit of lengths on screen.
     points_world
-        The cage, (n, 3), metres.
+        The points of the cage at the start, (n, 3), metres.
     shots, rows
         The film and its list of events.
     shots_per_motion
-        How many shots each motion has.
+        How many shots each motion has, but for those of drives.
     loads
         For each phase that was run, what acts.
     """
@@ -151,15 +161,15 @@ class Playback(Film):
 
 def single_motion(scene: Scene, end: Pose, touching: tuple[str, ...], length_unit: LengthUnit) -> Film:
     """Return the object's way from its start to a pose, where what has these names touches; without loads."""
-    at, start = _TouchesAt(scene), scene.object.pose_world_object
-    shots = (Shot(-1, 0, start, at.of(start, ())), Shot(0, 0, end, at.of(end, touching)))
+    at, start, cage = _TouchesAt(scene), scene.object.pose_world_object, cage_at_start(scene.cage)
+    shots = (Shot(-1, 0, start, cage, at.of(start, cage, ())), Shot(0, 0, end, cage, at.of(end, cage, touching)))
     rows = (Row(0, Event("", None, (), touching, end, None), None, None, 1, 1),)
     return Film(scene, length_unit, scene.cage.points_world(), shots, rows, 1, ((),))
 
 
 def playback(run: Run, length_unit: LengthUnit = "mm", shots_per_motion: int = SHOTS_PER_MOTION) -> Playback:
     """Turn a run into shots and rows; each motion gets ``shots_per_motion`` of them, or what `MOST_SHOTS` leaves, each
-    finding one.
+    finding one. A whole drive gets as many as `MOTIONS_PER_DRIVE` motions.
     """
     n_events = sum(len(phase.events) for phase in run.phases)
     shots_per_motion = max(1, min(shots_per_motion, MOST_SHOTS // max(n_events, 1)))
@@ -179,21 +189,21 @@ class _TouchesAt:
         self.index = {name: index for index, name in enumerate(scene.cage.element_names)}
         self.finder = TouchFinder(scene) if scene.has_other_shapes else None
 
-    def of(self, pose: Pose, names: tuple[str, ...]) -> Touches:
-        """Return what touches of what has these names."""
+    def of(self, pose: Pose, cage: CageAt, names: tuple[str, ...]) -> Touches:
+        """Return what touches of what has these names, while the bodies of the cage are where they are."""
         if not names:
             return Touches(self.indices(()), (), np.zeros((0, 3)), None, np.zeros((0, 3)))
         elements, scene = self.indices(names), self.scene
         n_solid = len(scene.cage.names) + len(scene.cage.shapes)
         found, left = [], elements
         if self.finder is not None:
-            all_places = self.finder.at(pose)
+            all_places = self.finder.at(pose, cage)
             is_asked = np.isin(all_places.elements, elements)
             found.append(all_places.chosen(is_asked))
             left = np.setdiff1d(elements, all_places.elements)
             left = left[left < n_solid]  # a hole has no place but where it touches
         if len(left) or not found:
-            near = nearest_on_object(scene.object, pose, scene.cage, left.tolist())
+            near = nearest_on_object(scene.object, pose, cage, left.tolist())
             found.insert(0, PlacesOfContact(left, near.parts, near.places_world, near.normals_world))
         each, parts, places, normals = (np.concatenate(columns) for columns in zip(*found, strict=True))
         boxes = tuple(scene.object.element_names[part] for part in parts.tolist())
@@ -209,40 +219,72 @@ class _Camera:
         self.shots_per_motion = shots_per_motion
         self.points_world = run.scene.cage.points_world()
         self.at = _TouchesAt(run.scene)
-        start = run.phases[0].start_pose
-        self.shots: list[Shot] = [Shot(-1, 0, start, self.at.of(start, ()))]
+        self.moves = bool(self.at.finder or run.scene.cage.bodies)  # places of contacts do, on the way of a motion
+        start, cage = run.phases[0].start_pose, cage_at_start(run.scene.cage)
+        self.shots: list[Shot] = [Shot(-1, 0, start, cage, self.at.of(start, cage, ()))]
         self.rows: list[Row] = []
+        self._asked, self._found = (0, 0.0), cage
 
     def shoot(self, phase_index: int, phase: PhaseRun) -> None:
         pose, before = phase.start_pose, frozenset[str]()
-        for event in phase.events:
+        for index, event in enumerate(phase.events):
             last = event is phase.events[-1]
             first_shot, row = len(self.shots), len(self.rows)
             escape = _escape(phase, self.run.scene.size_m) if last else None
             end = event.pose_world_object if escape is None else escape.pose_at(pose, 1.0)
-            is_held = last and escape is None
-            touches = self.at.of(end, event.contacts)
+            cage = self._cage(phase_index, event.share)
+            touches = self.at.of(end, cage, event.contacts)
             stays = tuple(name for name in event.contacts if name in before)
-            kept = touches if self.at.finder else touches.chosen([name in before for name in event.contacts])
-            for way in self._way(pose, event, escape):  # places on what is round move along
-                self.shots.append(Shot(row, phase_index, way, self.at.of(way, stays) if self.at.finder else kept))
-            self.shots.append(Shot(row, phase_index, end, self._held(end, phase.contacts) if is_held else touches))
+            kept = touches.chosen([name in before for name in event.contacts]) if not self.moves else None
+            for frame in self._way(phase_index, index, pose, escape):  # places on what is round, or driven, move along
+                way, at = frame.pose_world_object, self._cage(phase_index, frame.share)
+                along = self._along(phase, index, frame.fraction)
+                touching = kept or self.at.of(way, at, stays)
+                self.shots.append(Shot(row, phase_index, way, at, touching, frame.share, along))
+            if last and escape is None:
+                touches = self._held(end, cage, phase.contacts)
+            along = self._along(phase, index, 1.0)
+            self.shots.append(Shot(row, phase_index, end, cage, touches, event.share, along))
             verdict = phase.verdict if last else None
             seen = as_seen(event, pose, self.run.scene)
             self.rows.append(Row(phase_index, event, seen, verdict, first_shot, len(self.shots) - 1))
             pose, before = event.pose_world_object, frozenset(event.contacts)
 
-    def _way(self, start: Pose, event: Event, escape: Motion | None) -> list[Pose]:
-        fractions = [step / self.shots_per_motion for step in range(1, self.shots_per_motion)]
-        if escape is not None:
-            return [escape.pose_at(start, fraction) for fraction in fractions]
-        if event.motion is None:
-            return []
-        return [self.run.pose_on_the_way(start, event, fraction) for fraction in fractions]
+    def _cage(self, phase_index: int, share: float) -> CageAt:
+        """Return the cage where so much of a drive is done: one and the same while no body moves."""
+        asked = (phase_index, share)
+        if asked != self._asked:
+            self._asked = asked
+            found = cage_at(self.run, phase_index, share)
+            before = self.shots[-1].cage.displaced
+            stands = all(map(_is_same, found.displaced, before))
+            self._found = self.shots[-1].cage if stands else found
+        return self._found
 
-    def _held(self, pose: Pose, contacts: tuple[Contact, ...]) -> Touches:
+    @staticmethod
+    def _along(phase: PhaseRun, event_index: int, fraction: float) -> float | None:
+        row = row_on_curve(phase, event_index, fraction)
+        return None if row is None or phase.drive is None else value_at(phase.drive.curve.along, row)
+
+    def _way(self, phase_index: int, event_index: int, start: Pose, escape: Motion | None) -> list[Frame]:
+        phase = self.run.phases[phase_index]
+        event = phase.events[event_index]
+        n_shots = self.shots_per_motion
+        if escape is not None:
+            return [
+                Frame(phase_index, event_index, step / n_shots, escape.pose_at(start, step / n_shots), event.share)
+                for step in range(1, n_shots)
+            ]
+        if is_driven_on(phase, event_index):
+            way = event.share - share_before(phase, event_index)
+            n_shots = math.ceil(MOTIONS_PER_DRIVE * way * n_shots)
+        elif event.motion is None:
+            return []
+        return [self.run.frame_at(phase_index, event_index, step / n_shots) for step in range(1, n_shots)]
+
+    def _held(self, pose: Pose, cage: CageAt, contacts: tuple[Contact, ...]) -> Touches:
         if not contacts:
-            return self.at.of(pose, ())
+            return self.at.of(pose, cage, ())
         forces = [_force(contact) for contact in contacts]
         elements = self.at.indices(tuple(contact.point for contact in contacts))
         return Touches(
@@ -252,12 +294,17 @@ class _Camera:
             None if any(force is None for force in forces) else np.array(forces) @ pose.rotation,
             np.array(
                 [
-                    self.points_world[element] if contact.place_world is None else contact.place_world
+                    cage.points_world[element] if contact.place_world is None else contact.place_world
                     for element, contact in zip(elements.tolist(), contacts, strict=True)
                 ]
             ),
             np.array([contact.gap_m for contact in contacts]),
         )
+
+
+def _is_same(one: Pose, other: Pose) -> bool:
+    pairs = ((one.position_m, other.position_m), (one.quaternion_wxyz, other.quaternion_wxyz))
+    return all(np.array_equal(*pair) for pair in pairs)
 
 
 def _escape(phase: PhaseRun, size_m: float) -> Motion | None:

@@ -7,7 +7,8 @@ Exaggeration by k shows the object k times as far from a reference pose, turned 
 times as far from the nearest place of the object at the reference, a shape of the cage as a whole. A hole goes with
 what it is cut out of, and its play around what stands in it is k times as wide. To first order in the motion, the gaps
 on screen are then k times the true ones: what touches on screen touches. (Of a shape this holds where it comes to touch
-along the way on which it was nearest.)
+along the way on which it was nearest.) A body of the cage that can be driven goes as one with what is nearest of it,
+and no farther than exaggerated motions reach: else one that waits for its phase would be out of the picture.
 
 Each phase has an exaggeration of its own. A long travel, such as the way into the cage, is shown as it is, and what
 follows is measured from its end. So is a motion to what was not nearest before, which would not touch on screen.
@@ -26,7 +27,7 @@ import numpy as np
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
-from cagepose.model.shapes import Shape
+from cagepose.runs.driven_cage import CageAt
 from cagepose.views.solids import REACHES_OF_VIEW, cut_off, outer_points, vertices_of
 from cagepose.views.viewer.playback import Film, Touches
 from cagepose.views.viewer.surface import nearest_on_object
@@ -79,10 +80,13 @@ class PhaseView(NamedTuple):
 
 
 class Look(NamedTuple):
-    """How one moment is shown: exaggerated by ``factor``, from the pose of the shot ``reference``."""
+    """How one moment is shown: exaggerated by ``factor``, from the pose of the shot ``reference``, with the bodies of
+    the cage where they are in ``cage``.
+    """
 
     reference: int
     factor: float
+    cage: CageAt
 
 
 class Stage:
@@ -95,11 +99,12 @@ class Stage:
     size_m
         Their unit: the size of the scene, or of what is shown of it.
     bodies_world
-        Points whose hull is that of each shape of the cage, as far as they are shown: tuples of (n, 3), metres.
+        Points whose hull is that of each shape of the cage, as far as they are shown: tuples of (n, 3), metres. Those
+        of a body that is driven are where it starts and where it is after each event.
     reach_m
         So far from the object and the points, along each axis, are they shown.
     middles_world
-        Of each of these, and the mouth of each hole of the cage, (n, 3), metres.
+        Of each of these at the start, and the mouth of each hole of the cage, (n, 3), metres.
     radius
         A sphere about the origin that holds the cage and the object at the start and the end, in drawing units.
     phases
@@ -112,16 +117,22 @@ class Stage:
         self.center_object_m = held.center_of_gravity_m
         self._gaps: dict[int, FloatArray] = {}
         ends = (shown.shots[0].pose_world_object, shown.shots[-1].pose_world_object)
-        everything = np.concatenate([shown.points_world, *(pose.transform(outer_points(held)) for pose in ends)])
-        bodies = [scene.cage.pose_world_cage.transform(vertices_of([shape])) for shape in scene.cage.shapes]
+        cages = _distinct([shown.shots[0].cage, *(shown.shots[row.last_shot].cage for row in shown.rows)])
+        points = (cage.points_world for cage in cages)
+        everything = np.concatenate([*points, *(pose.transform(outer_points(held)) for pose in ends)])
+        bodies = [_everywhere(cages, which) for which in range(len(scene.cage.shapes))]
         whole = _extent([everything, *bodies])
         near = [cut_off(body, everything, held.reach_m) for body in bodies]
         is_whole = whole <= GREATEST_ENLARGEMENT * _extent([everything, *near])
+        self._needed = None if is_whole else everything
         self.bodies_world = tuple(bodies if is_whole else near)
         self.reach_m = whole if is_whole else REACHES_OF_VIEW * held.reach_m
+        start = cages[0]
+        shapes = [self._as_far_as_shown(_everywhere(cages[:1], which)) for which in range(len(bodies))]
+        holes = range(len(shapes), len(shapes) + len(scene.cage.holes))
+        mouths = [start.pose_of_shape(which).position_m for which in holes]
+        self.middles_world = np.array([*(shape.mean(axis=0) for shape in shapes), *mouths]).reshape(-1, 3)
         everything = np.concatenate([everything, *self.bodies_world])
-        mouths = [scene.cage.pose_world_cage.transform(hole.pose_body_shape.position_m) for hole in scene.cage.holes]
-        self.middles_world = np.array([*(body.mean(axis=0) for body in self.bodies_world), *mouths]).reshape(-1, 3)
         self.middle_world: FloatArray = (everything.min(axis=0) + everything.max(axis=0)) / 2.0
         radius_m = float(np.linalg.norm(everything - self.middle_world, axis=1).max())
         # Of a ball on a large table the scene's size is that of the table, of which little is shown. In steps from what
@@ -129,6 +140,20 @@ class Stage:
         steps = math.floor(math.log(scene.size_m / (2.0 * radius_m), SIZE_STEP)) if bodies else 0
         self.size_m: float = scene.size_m / SIZE_STEP ** max(0, steps)
         self.radius = radius_m / self.size_m
+
+    def driven_bodies(self, look: Look) -> list[FloatArray]:
+        """Return points whose hull is that of each shape of bodies that can be driven, (n, 3), metres, as shown."""
+        cage, shifts = look.cage.cage, self.shifts(look)
+        n_points = len(cage.names)
+        return [
+            self._as_far_as_shown(_everywhere([look.cage], which) + shifts[n_points + which])
+            for which in range(len(cage.shapes))
+            if cage.element_bodies[n_points + which]
+        ]
+
+    def _as_far_as_shown(self, body: FloatArray) -> FloatArray:
+        """Return points of a body of the cage, (n, 3), metres, those far from what must be seen moved near."""
+        return body if self._needed is None else cut_off(body, self._needed, self.reach_m)
 
     def place(self, point_world: FloatArray) -> FloatArray:
         """Return a point of the world, (3,) or (n, 3) in metres, in drawing coordinates."""
@@ -154,18 +179,22 @@ class Stage:
 
     def look(self, shot: int, exaggerations: Sequence[float]) -> Look:
         """Return how a shot is shown, exaggerated by so much in each phase."""
-        index = next(index for index, phase in enumerate(self.phases) if shot <= phase.last)
+        index, cage = next(index for index, phase in enumerate(self.phases) if shot <= phase.last), self.cage(shot)
         phase = self.phases[index]
-        before = Look(0, exaggerations[0] if phase.start == 0 else 1.0)
+        before = Look(0, exaggerations[0] if phase.start == 0 else 1.0, cage)
         if index > 0:
             ended = self.phases[index - 1]
-            before = Look(ended.reference, exaggerations[index - 1] if ended.start < ended.last else 1.0)
+            before = Look(ended.reference, exaggerations[index - 1] if ended.start < ended.last else 1.0, cage)
         if phase.start > phase.first:  # a long motion
             if shot <= phase.start:
-                return Look(before.reference, self._passing(before.factor, 1.0, phase.first, phase.start, shot))
-            before = Look(phase.reference, 1.0)
+                return Look(before.reference, self._passing(before.factor, 1.0, phase.first, phase.start, shot), cage)
+            before = Look(phase.reference, 1.0, cage)
         factor = self._passing(before.factor, exaggerations[index], phase.start, phase.last, shot)
-        return Look(phase.reference, factor)
+        return Look(phase.reference, factor, cage)
+
+    def cage(self, shot: int) -> CageAt:
+        """Return the cage of a shot, its bodies where they are then."""
+        return self.shown.shots[shot].cage
 
     def _passing(self, factor: float, other: float, first: int, last: int, shot: int) -> float:
         room = min(max(1.0, EASED_SHARE * self.shown.shots_per_motion), last - first)
@@ -184,27 +213,42 @@ class Stage:
 
     def gaps_world(self, reference: int) -> FloatArray:
         """Return, from the place of the object at a reference that is nearest to each of the cage's points and shapes,
-        the way to the place there, (n, 3), metres; of a hole, that of what it is cut out of.
+        the way to the place there, (n, 3), metres; of a hole, that of what it is cut out of, and of a body that can be
+        driven, that of what is nearest.
         """
         if reference not in self._gaps:
             scene = self.shown.scene
-            nearest = nearest_on_object(scene.object, self.shown.shots[reference].pose_world_object, scene.cage)
+            pose = self.shown.shots[reference].pose_world_object
+            nearest = nearest_on_object(scene.object, pose, self.cage(reference))
             gaps = nearest.places_world - nearest.feet_world
             index = {name: number for number, name in enumerate(scene.cage.element_names)}
             bodies = [next((index[name] for name in hole.in_), None) for hole in scene.cage.holes]
             with_bodies = [np.zeros(3) if body is None else gaps[body] for body in bodies]
-            self._gaps[reference] = np.concatenate([gaps, np.array(with_bodies).reshape(-1, 3)])
+            self._gaps[reference] = self._as_one(np.concatenate([gaps, np.array(with_bodies).reshape(-1, 3)]))
         return self._gaps[reference]
+
+    def _as_one(self, gaps: FloatArray) -> FloatArray:
+        """Return gaps of the cage's elements, (n, 3), those of each body that can be driven all like its least."""
+        cage = self.shown.scene.cage
+        bodies, n_solid = np.array(cage.element_bodies), len(cage.names) + len(cage.shapes)
+        for body in range(1, 1 + len(cage.bodies)):
+            solid = np.nonzero(bodies[:n_solid] == body)[0]
+            if len(solid):
+                gaps[bodies == body] = gaps[solid[np.linalg.norm(gaps[solid], axis=1).argmin()]]
+        return gaps
 
     @cached_property
     def plays(self) -> tuple[FloatArray, FloatArray]:
         """How much wider each hole is than what stands in it at the end, metres, of the object's holes and of the
         cage's; zero where nothing does.
         """
-        scene, pose = self.shown.scene, self.shown.shots[-1].pose_world_object
-        others, held = scene.cage.pose_world_cage, scene.object
-        around = [_play(hole, pose.inverse() @ others, scene.cage.shapes) for hole in held.holes]
-        within = [_play(hole, others.inverse() @ pose, held.shapes) for hole in scene.cage.holes]
+        held, pose, at = self.shown.scene.object, self.shown.shots[-1].pose_world_object, self.cage(-1)
+        shapes, holes = at.cage.shapes, at.cage.holes
+        others = [at.pose_of_cage(which).transform(vertices_of([shape])) for which, shape in enumerate(shapes)]
+        others_world = np.concatenate([np.zeros((0, 3)), *others])
+        own_world = pose.transform(vertices_of(held.shapes))
+        around = [_play(hole, pose @ hole.pose_body_shape, others_world) for hole in held.holes]
+        within = [_play(hole, at.pose_of_shape(which), own_world) for which, hole in enumerate(holes, len(shapes))]
         return np.array(around), np.array(within)
 
     def shifts(self, look: Look) -> FloatArray:
@@ -212,8 +256,10 @@ class Stage:
         if look.factor == 1.0:
             return np.zeros((len(self.shown.scene.cage.element_names), 3))
         gaps = self.gaps_world(look.reference)
-        lengths = np.linalg.norm(gaps, axis=1, keepdims=True)
-        most = MOST_ADDED * self.size_m / np.maximum(lengths, MOTION_AT_REST * self.size_m)
+        lengths = np.maximum(np.linalg.norm(gaps, axis=1, keepdims=True), MOTION_AT_REST * self.size_m)
+        bodies = np.array(self.shown.scene.cage.element_bodies)[:, None]
+        of_bodies = np.maximum(MOST_WAY * self.size_m - lengths, 0.0)
+        most = np.where(bodies > 0, of_bodies, MOST_ADDED * self.size_m) / lengths
         moved: FloatArray = np.minimum(look.factor - 1.0, most) * gaps
         return moved
 
@@ -226,7 +272,7 @@ class Stage:
         first = len(cage.names) + len(cage.shapes)
         for row in np.nonzero(touches.points >= first)[0].tolist():
             number = int(touches.points[row]) - first
-            hole = cage.pose_world_cage @ cage.holes[number].pose_body_shape
+            hole = look.cage.pose_of_shape(len(cage.shapes) + number)
             out = hole.inverse_transform(touches.places_world[row]) * [1.0, 1.0, 0.0]
             aside = float(np.linalg.norm(out)) or 1.0
             shifts[row] += hole.rotation @ out * ((look.factor - 1.0) * self.plays[1][number] / aside)
@@ -234,7 +280,7 @@ class Stage:
 
     def points(self, look: Look) -> FloatArray:
         """Return where the cage points are shown, (n, 3), metres in the world."""
-        moved: FloatArray = self.shown.points_world + self.shifts(look)[: len(self.shown.points_world)]
+        moved: FloatArray = look.cage.points_world + self.shifts(look)[: len(self.shown.points_world)]
         return moved
 
     def normal(self, normal_world: FloatArray, true: Pose, shown: Pose) -> FloatArray:
@@ -259,7 +305,10 @@ class Stage:
         return bool((np.linalg.norm(parted, axis=1) <= MOST_PARTED * self.size_m).all())
 
     def _is_long(self, one: int, other: int) -> bool:
-        return not (self._fits(self._moved(one, other), 2) and self._meet(other, Look(one, LONG_AT)))
+        """Whether a motion is shown as it is, from one shot to another, as one is on which bodies are driven."""
+        if self.cage(one) is not self.cage(other):
+            return True
+        return not (self._fits(self._moved(one, other), 2) and self._meet(other, Look(one, LONG_AT, self.cage(other))))
 
     def _proposed(self, reference: int, start: int, last: int) -> int:
         ends = [row.last_shot for row in self.shown.rows if start < row.last_shot <= last]
@@ -268,7 +317,7 @@ class Stage:
             return 1
         for k in reversed(EXAGGERATIONS):
             if all(self._fits(move, k) for move in moves) and all(
-                self._meet(shot, Look(reference, k)) for shot in ends
+                self._meet(shot, Look(reference, k, self.cage(shot))) for shot in ends
             ):
                 return k
         return 1
@@ -279,9 +328,21 @@ def _extent(points: Sequence[FloatArray]) -> float:
     return float(np.linalg.norm(np.ptp(np.concatenate(points), axis=0)))
 
 
-def _play(hole: Hole, pose_hole_other: Pose, shapes: Sequence[Shape]) -> float:
-    """Return how much wider a hole is than what stands in it of shapes of the other body."""
-    in_hole = (hole.pose_body_shape.inverse() @ pose_hole_other).transform(vertices_of(shapes))
+def _distinct(cages: Sequence[CageAt]) -> list[CageAt]:
+    """Return cages without those whose bodies are where they are in another."""
+    return list({id(cage): cage for cage in cages}.values())
+
+
+def _everywhere(cages: Sequence[CageAt], which: int) -> FloatArray:
+    """Return the vertices of a shape of the cage wherever it is in some of them, (n, 3), metres."""
+    cage = cages[0].cage
+    body, vertices = cage.element_bodies[len(cage.names) + which], vertices_of([cage.shapes[which]])
+    return np.concatenate([at.pose_of_cage(which).transform(vertices) for at in (cages if body else cages[:1])])
+
+
+def _play(hole: Hole, pose_world_hole: Pose, others_world: FloatArray) -> float:
+    """Return how much wider a hole is than what stands in it of vertices of the other body, (n, 3)."""
+    in_hole = pose_world_hole.inverse_transform(others_world)
     aside = np.hypot(in_hole[:, 0], in_hole[:, 1])
     # What stands in a hole may come out of it at both ends, where a mesh has its vertices.
     beside = aside[aside < 1.2 * hole.radius_m]

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.model.box import Box
-from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
 from cagepose.model.nearest import Core, core_of, nearest_points
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
+from cagepose.runs.driven_cage import CageAt
 
 
 class Nearest(NamedTuple):
@@ -37,13 +37,13 @@ class Nearest(NamedTuple):
     parts: NDArray[np.int64]
 
 
-def nearest_on_object(held: Object, pose: Pose, cage: Cage, elements: Sequence[int] | None = None) -> Nearest:
+def nearest_on_object(held: Object, pose: Pose, at: CageAt, elements: Sequence[int] | None = None) -> Nearest:
     """Return what is nearest of the object, at ``pose``, to elements of the cage: its points and shapes, by index,
     points first, and no holes. Left out: all.
 
     Of a point inside boxes, the place is on the nearest face of the box in which it lies deepest.
     """
-    points = cage.points_world()
+    cage, points = at.cage, at.points_world
     chosen = np.arange(len(points) + len(cage.shapes)) if elements is None else np.array(elements, dtype=np.int64)
     feet, places, normals = np.zeros((3, len(chosen), 3))
     found = Nearest(feet, places, normals, np.zeros(len(chosen), dtype=np.int64))
@@ -59,7 +59,8 @@ def nearest_on_object(held: Object, pose: Pose, cage: Cage, elements: Sequence[i
             point = core_of(points[element], cage.pose_world_cage)
             _write_nearest_part(cores, point, len(held.boxes), row, gap, found)
         else:
-            shape = core_of(cage.shapes[element - len(points)], cage.pose_world_cage)
+            which = element - len(points)
+            shape = core_of(cage.shapes[which], at.pose_of_cage(which))
             _write_nearest_part(cores, shape, 0, row, gap, found)
     return found
 

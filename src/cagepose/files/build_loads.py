@@ -1,0 +1,104 @@
+"""The loads of a checked scene file: forces, moments, springs and drives."""
+
+from __future__ import annotations
+
+import math
+
+from cagepose.errors import Key, Problem, SceneError
+from cagepose.files.schema import ForceModel, LoadModel, MomentModel, SpringModel
+from cagepose.files.schema_driven import LegModel, Legs, StopModel
+from cagepose.files.units import LengthUnit, to_metres
+from cagepose.model.drive import Drive
+from cagepose.model.load import Force, Load, Moment
+from cagepose.model.spring import Spring
+
+KEYS_OF_TURN: dict[Key, tuple[Key, ...]] = {
+    "about": ("turn", "about"),
+    "through": ("turn", "through"),
+    "angle": ("turn", "angle_deg"),
+}
+"""Where a file holds what a `Drive` takes."""
+
+
+def load_of(model: LoadModel, unit: LengthUnit) -> Load:
+    """Return a load whose file has lengths in ``unit``.
+
+    Raises
+    ------
+    SceneError
+        All that is wrong with it, with paths from the load.
+    """
+    problems: list[Problem] = []
+    springs = list[Spring]()
+    for number, spring in enumerate(model.springs or []):
+        try:
+            springs.append(_spring(spring, unit))
+        except SceneError as error:
+            problems += error.under("springs", number).problems
+    drive = dict[str, list[Drive]]()
+    for name, legs in (model.drive or {}).items():
+        drive[name] = []
+        for place, leg in _placed(legs):
+            try:
+                drive[name].append(_leg(leg, unit))
+            except SceneError as error:
+                problems += error.under("drive", name, *place).problems
+    if problems:
+        raise SceneError(problems)
+    load = Load(
+        model.name,
+        gravity=model.gravity,
+        force=None if model.force is None else _force(model.force, unit),
+        forces=[_force(force, unit) for force in model.forces or []],
+        moments=[_moment(moment, unit) for moment in model.moments or []],
+        springs=springs,
+        drive=drive,
+        stop_at=None if model.stop_at is None else _limit(model.stop_at, unit),
+    )
+    if model.stop_at is not None:
+        _check_kind_of_limit(model.stop_at, load)
+    return load
+
+
+def _force(model: ForceModel, unit: LengthUnit) -> Force:
+    return Force(model.direction, to_metres(model.at, unit), model.magnitude, follows=bool(model.follows))
+
+
+def _moment(model: MomentModel, unit: LengthUnit) -> Moment:
+    return Moment(model.direction, float(to_metres(model.magnitude, unit)), follows=bool(model.follows))
+
+
+def _spring(model: SpringModel, unit: LengthUnit) -> Spring:
+    per_metre = model.stiffness / float(to_metres(1.0, unit))
+    ends = to_metres(model.at, unit), to_metres(model.to, unit)
+    return Spring(*ends, per_metre, model.preload or 0.0, of=model.of)
+
+
+def _placed(legs: Legs) -> list[tuple[tuple[Key, ...], LegModel]]:
+    """Return the legs of a body, each with its place among them."""
+    return [((), legs)] if isinstance(legs, LegModel) else [((index,), leg) for index, leg in enumerate(legs)]
+
+
+def _leg(model: LegModel, unit: LengthUnit) -> Drive:
+    travel, turn = None if model.travel is None else to_metres(model.travel, unit), model.turn
+    if turn is None:
+        return Drive(travel)
+    through = None if turn.through is None else to_metres(turn.through, unit)
+    try:
+        return Drive(travel, turn.about, through, math.radians(turn.angle_deg))
+    except SceneError as error:
+        places = [(KEYS_OF_TURN.get(problem.path[0], problem.path), problem.message) for problem in error.problems]
+        raise SceneError([Problem(path, message) for path, message in places]) from None
+
+
+def _limit(model: StopModel, unit: LengthUnit) -> float | None:
+    return float(to_metres(model.moment, unit)) if model.moment is not None else model.force
+
+
+def _check_kind_of_limit(model: StopModel, load: Load) -> None:
+    if load.stops_at_moment and model.force is not None:
+        message = "is a force, and the drive turns alone, which takes a moment; give moment instead"
+        raise SceneError([Problem(("stop_at", "force"), message)])
+    if not load.stops_at_moment and model.moment is not None:
+        message = "is a moment, and the drive travels, which takes a force along it; give force instead"
+        raise SceneError([Problem(("stop_at", "moment"), message)])

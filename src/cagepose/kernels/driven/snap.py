@@ -1,0 +1,95 @@
+"""Where the rest is lost along a drive, the object snaps: the bodies stand still, and it moves to the next rest."""
+
+from __future__ import annotations
+
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.vector import Vector, norm, scaled
+from cagepose.kernels.boundary.features import place_boundary
+from cagepose.kernels.boundary.geometry import deepest_overlap, held_at, place_object
+from cagepose.kernels.contact.metric import frame_at, moved_along_twist, twist_of, way_between
+from cagepose.kernels.driven.stiffness import hold_carried, least_stiffness
+from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.outcome.trace import RESTS
+from cagepose.kernels.quasistatic.first_contact import Twist
+from cagepose.kernels.quasistatic.path import Path, on_faces
+from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts
+from cagepose.kernels.quasistatic.run import steps_from
+from cagepose.kernels.quasistatic.step import State, stand_at
+
+PUSHES = (0.0, 1e-5, 1e-4, 1e-3, 1e-2)
+"""In sizes of the scene: how far an object is pushed out of a balance that is lost, one after the other."""
+OPENED = 1e-3
+"""In sizes of the scene: how far an object goes where that opens its contacts to second order."""
+STAYS = 4.0
+"""In pushes: an object that comes to rest no farther away has not snapped."""
+
+
+@kernel
+def is_inside(drive: DriveSetting, position: Vector, quaternion: Quaternion, work: DriveWorkspace) -> bool:
+    """Whether the object at a pose and the cage are in each other by more than the touch tolerance."""
+    geometry, run = drive.setting.geometry, work.run
+    place_boundary(held_at(geometry, run.placement), position, quaternion)
+    return deepest_overlap(geometry, run.placement, run.cage.overlap).feature >= 0
+
+
+@kernel
+def opened_pose(
+    drive: DriveSetting, position: Vector, quaternion: Quaternion, work: DriveWorkspace
+) -> tuple[bool, Vector, Quaternion]:
+    """Return a pose a little along the first of the vectors in the scratch, to one side or the other, where nothing is
+    inside; False: there is none.
+    """
+    setting, scratch = drive.setting, work.scratch[0]
+    frame = frame_at(setting.body, quaternion)
+    for k in range(work.run.contacts.n_freedoms):
+        scratch.load[k] = scratch.vectors[k, 0]
+    velocity, spin = twist_of(scratch.load, frame)
+    speed = norm(velocity) + setting.body.reach_m * norm(spin)
+    for side in (1.0, -1.0):
+        amount = side * OPENED * setting.size_m / speed
+        end, turned = moved_along_twist(position, quaternion, velocity, spin, amount)
+        if not is_inside(drive, end, turned, work):
+            return True, end, turned
+    return False, position, quaternion
+
+
+@kernel
+def snaps(
+    drive: DriveSetting, state: State, first_step: int, step_limit: int, work: DriveWorkspace
+) -> tuple[int, int, State]:
+    """Let the object go where the bodies stand, from a rest that is lost; return (verdict code, number of all steps,
+    state at the end). It stays where it is, and nothing is written, if no push takes it elsewhere.
+
+    It is pushed along what has the least stiffness, both ways, at first by nothing, then more and more.
+    """
+    setting, run, scratch = drive.setting, work.run, work.scratch[0]
+    hold_carried(run.ahead, work)
+    least_stiffness(drive, run.ahead, scratch.rest.curvature, work)
+    frame = frame_at(setting.body, state.quaternion)
+    for k in range(run.contacts.n_freedoms):
+        scratch.load[k] = scratch.vectors[k, 0]
+    velocity, spin = twist_of(scratch.load, frame)
+    speed = norm(velocity) + setting.body.reach_m * norm(spin)
+    for push in PUSHES:
+        push_m = push * setting.size_m
+        for side in (1.0, -1.0):
+            begin, turned = state.position, state.quaternion
+            if push > 0.0 and speed > 0.0:
+                if not stand_at(setting, begin, turned, run):
+                    continue
+                along = Twist(scaled(velocity, side / speed), scaled(spin, side / speed), push_m)
+                allow_depths(setting.geometry, run.placement, setting.tolerances, run.path)
+                constrain_contacts(run.contacts, setting.tolerances.rounding_m, run.path.constraints)
+                done, begin, turned = on_faces(setting, Path(begin, turned, along), push_m, run)
+                if not done or is_inside(drive, begin, turned, work):
+                    continue
+            elif push > 0.0 or side < 0.0:
+                continue
+            pushed = State(begin, turned, state.turn_step_rad, 0, 0)
+            verdict, step, after = steps_from(setting, pushed, first_step, step_limit, run)
+            away = way_between(state.position, state.quaternion, after.position, after.quaternion, setting.body.reach_m)
+            if away > max(STAYS * push_m, 1e-9 * setting.size_m):
+                return verdict, step, after
+    place_object(setting.geometry, state.position, state.quaternion, run.placement)
+    return RESTS, first_step, state

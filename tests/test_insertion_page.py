@@ -1,0 +1,22 @@
+"""The page about insertion and jamming: its Python prints what stands below it."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE = (ROOT / "docs" / "insertion.md").read_text(encoding="utf-8")
+(CODE,), (PRINTED,) = (re.findall(rf"```{kind}\n(.*?)```", PAGE, re.DOTALL) for kind in ("python", "text"))
+
+
+def test_the_code_prints_what_stands_below_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(CODE, {})
+    assert printed.getvalue() == PRINTED
