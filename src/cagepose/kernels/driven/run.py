@@ -103,12 +103,15 @@ def publish_drive(phase: int, share: float, start: Start, work: DriveWorkspace, 
     proof, driven = work.run.proof.contacts, work.run.contacts
     for i in range(min(proof.used[0], n_contacts - first) if record.verdict in (RESTS, STOPS) else 0):
         contact, at = outcome.contacts[first + i], place_before(driven, proof.rows[i])
-        forces = driven.states[at].forces
-        contact.force_normal = forces[0] if at >= 0 else 0.0
+        if at < 0:
+            contact.force_normal = 0.0
+            for k in range(3):
+                contact.force_tangential[k] = 0.0
+            continue
+        forces, directions = driven.states[at].forces, driven.rows[at].directions
+        contact.force_normal = forces[0]
         for k in range(3):
-            directions = driven.rows[at].directions
-            tangential = -(forces[1] * directions[1, k] + forces[2] * directions[2, k])
-            contact.force_tangential[k] = tangential if at >= 0 else 0.0
+            contact.force_tangential[k] = -(forces[1] * directions[1, k] + forces[2] * directions[2, k])
 
 
 @kernel
