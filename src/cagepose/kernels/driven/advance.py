@@ -12,7 +12,7 @@ from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.metric import twist_between
 from cagepose.kernels.driven.bodies import move_bodies, seen_from_body
 from cagepose.kernels.driven.snap import is_inside
-from cagepose.kernels.driven.trial import try_share, write_guards
+from cagepose.kernels.driven.trial import LITTLE, try_share, write_guards
 from cagepose.kernels.driven.workspace import HITS_LIMIT, DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist, first_with_body
@@ -22,7 +22,7 @@ TRIALS = 60
 SAME_SHARE = 1e-14
 """So near is an event found, in shares of the drive."""
 SMALL = 1e-3
-"""Of a step: so far a mode that was found has to last."""
+"""Of a step: so far a mode that was found has to last; or as far as it has been tried."""
 AT_ZERO = 4e-12
 """A guard that is so near to zero has got there."""
 HALVINGS = 30
@@ -64,7 +64,7 @@ def last_of_mode(
         return to_share
     # A guard may be at zero where the step begins: what it does from there shows a little ahead.
     low, high, by_low, by_high, was_low = share, to_share, 1.0, 1.0, False
-    for ahead in (SMALL, 0.0):
+    for ahead in (SMALL, LITTLE, 0.0):
         low = share + ahead * (to_share - share)
         begun, end, turned = try_share(drive, position, quaternion, share, low, work)
         if begun and write_guards(drive, end, turned, low, work, work.low) >= 0.0:

@@ -8,9 +8,9 @@ import math
 
 from cagepose.kernels.algebra.least_squares import clear
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.vector import Vector, norm
+from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, vector_from
 from cagepose.kernels.boundary.geometry import place_object
-from cagepose.kernels.contact.contact_set import choose, is_smooth
+from cagepose.kernels.contact.contact_set import ContactSet, choose, is_smooth
 from cagepose.kernels.contact.edges import EVERY, first_choice, has_one_choice, last_of_group, next_choice
 from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.loads import total_load, work_done
@@ -27,9 +27,9 @@ from cagepose.kernels.driven.bodies import (
     write_drivers,
 )
 from cagepose.kernels.driven.could_jam import note_jams
-from cagepose.kernels.driven.pivot import mode_lasts
+from cagepose.kernels.driven.pivot import keep_mode, mode_lasts, return_to_mode
 from cagepose.kernels.driven.rate import APART, FOUND, copy_contact, find_mode
-from cagepose.kernels.driven.snap import opened_pose, snaps
+from cagepose.kernels.driven.snap import opened_pose, rests_ahead, snaps
 from cagepose.kernels.driven.stopped import OPENS, stopped_verdict
 from cagepose.kernels.driven.trial import write_way
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
@@ -48,6 +48,8 @@ MOST_CHOICES = 32
 """Choices of faces that are asked at one place."""
 JUMP = 1e-6
 """Of the drivers' force and the load: a greater change at one place is told. The force is that a little ahead."""
+PARALLEL = 1.0 - 1e-12
+"""Cosine: two contacts at one place push the same way."""
 STILL_LIMIT = 6
 """Steps without progress, one after the other, after which a drive has stalled."""
 
@@ -103,6 +105,8 @@ def find_rested(drive: DriveSetting, position: Vector, quaternion: Quaternion, w
     for i in range(contacts.used[0]):
         state, at = contacts.states[i], place_before(before, contacts.rows[i])
         all_known = all_known and at >= 0
+        if at < 0:
+            at = taken_over(contacts, i, before, setting.tolerances.touch_m)
         if at < 0 or not before.states[at].counts:
             state.counts = False
             continue
@@ -114,6 +118,21 @@ def find_rested(drive: DriveSetting, position: Vector, quaternion: Quaternion, w
         for j in range(3):
             state.forces[j] = before.states[at].forces[j]
     return all_known and n_carried == n_before
+
+
+@kernel
+def taken_over(contacts: ContactSet, i: int, before: ContactSet, touch_m: float) -> int:
+    """Return which of the contacts before, that has ended at a corner, goes on as another; -1: none does."""
+    row = contacts.rows[i]
+    for k in range(before.used[0]):
+        ended = before.rows[k]
+        if not before.states[k].counts or ended.cage_body != row.cage_body:
+            continue
+        away = norm(minus(vector_from(row.arm), vector_from(ended.arm)))
+        along = dot(vector_from(row.directions[0]), vector_from(ended.directions[0]))
+        if away <= 10.0 * touch_m and along >= PARALLEL and place_before(contacts, ended) < 0:
+            return k
+    return -1
 
 
 @kernel
@@ -135,8 +154,10 @@ def choose_mode(
     where it has to be; or that of the rate problem, with one choice of faces after the other.
     """
     contacts = work.run.contacts
-    if mode_lasts(drive, position, quaternion, share, to_share, False, work):
+    keep_mode(work)
+    if mode_lasts(drive, position, quaternion, share, to_share, work):
         return True
+    return_to_mode(work)
     if rate_lasts(drive, position, quaternion, share, to_share, work):
         return True
     if has_one_choice(contacts):
@@ -154,15 +175,10 @@ def choose_mode(
 def rate_lasts(
     drive: DriveSetting, position: Vector, quaternion: Quaternion, share: float, to_share: float, work: DriveWorkspace
 ) -> bool:
-    """Whether the rate problem has a solution with the faces that are chosen, and its mode lasts: with the forces as
-    they are found, or else shared anew.
-    """
-    for may_share in range(2):
-        if find_mode(drive, position, quaternion, share, work) != FOUND:
-            return False
-        if mode_lasts(drive, position, quaternion, share, to_share, may_share == 1, work):
-            return True
-    return False
+    """Whether the rate problem has a solution with the faces that are chosen, and its mode lasts."""
+    if find_mode(drive, position, quaternion, share, work) != FOUND:
+        return False
+    return mode_lasts(drive, position, quaternion, share, to_share, work)
 
 
 @kernel
@@ -267,6 +283,44 @@ def begin_at_rest(drive: DriveSetting, work: DriveWorkspace) -> None:
 
 
 @kernel
+def has_moved(drive: DriveSetting, state: State, after: State) -> bool:
+    reach_m = drive.setting.body.reach_m
+    away = way_between(state.position, state.quaternion, after.position, after.quaternion, reach_m)
+    return away > 1e-9 * drive.setting.size_m
+
+
+@kernel
+def note_snap(
+    drive: DriveSetting,
+    state: State,
+    after: State,
+    first: int,
+    last: int,
+    share: float,
+    reached: float,
+    verdict: int,
+    work: DriveWorkspace,
+) -> None:
+    """Note in the steps ``first`` up to, without, ``last`` at which share the object has snapped, with which forces of
+    the drivers before and after it, and what was lost.
+    """
+    load, rows, scratch = drive.setting.load, work.run.trace.rows, work.scratch[0]
+    for step in range(first, last):
+        rows[step].share = reached
+        rows[step].driving = rows[first - 1].driving if step < last - 1 else 0.0
+    if last == first or verdict != RESTS:
+        return
+    rows[last - 1].driving = write_drivers(
+        work.run.contacts, after.position, after.quaternion, load, reached, work.memory, work.drivers
+    )
+    move_bodies(drive.setting.geometry, drive.phase, share, work.memory)
+    before = energy_of_riding(load, state.position, state.quaternion)
+    move_bodies(drive.setting.geometry, drive.phase, reached, work.memory)
+    scratch.work += energy_of_riding(load, state.position, state.quaternion) - before
+    scratch.lost += work_done(load, state.position, state.quaternion, after.position, after.quaternion)
+
+
+@kernel
 def drive_on(
     drive: DriveSetting, state: State, first_step: int, step_limit: int, work: DriveWorkspace
 ) -> tuple[int, int, State, float]:
@@ -343,41 +397,38 @@ def drive_on(
         if goes_on:  # the mode did not last: which one does?
             goes_on = False
             continue
-        first, (verdict, step, after) = step, snaps(drive, here, step, step_limit, work)
-        for snapped in range(first, step):
-            run.trace.rows[snapped].share = share
-            run.trace.rows[snapped].driving = run.trace.rows[first - 1].driving if snapped < step - 1 else 0.0
-        if step > first and verdict == RESTS:
-            run.trace.rows[step - 1].driving = write_drivers(
-                run.contacts, after.position, after.quaternion, setting.load, share, work.memory, work.drivers
-            )
-        if step > first and verdict == RESTS:
-            scratch.lost += work_done(setting.load, position, quaternion, after.position, after.quaternion)
-        if (
-            verdict == RESTS
-            and way_between(position, quaternion, after.position, after.quaternion, setting.body.reach_m)
-            > 1e-9 * setting.size_m
-        ):
-            position, quaternion, n_still = after.position, after.quaternion, n_still + 1
-            begin_at_rest(drive, work)
-            if n_still < STILL_LIMIT:
+        return_to_mode(work)
+        first, reached = step, share
+        verdict, step, after = snaps(drive, here, step, step_limit, work)
+        if verdict == RESTS and not has_moved(drive, here, after):
+            stopped = stopped_verdict(drive, position, quaternion, share, work)
+            if stopped == OPENS:
+                opened, end, turned = opened_pose(drive, position, quaternion, work)
+                n_still += 1
+                if not opened or n_still >= STILL_LIMIT:
+                    break
+                write_state(run.trace.rows[step], here)
+                position, quaternion = end, turned
+                if not stand_at(setting, position, quaternion, run):
+                    break
+                begin_at_rest(drive, work)
+                write_driven(drive, step, share, position, quaternion, True, work)
+                step += 1
                 continue
-            break
+            if stopped != STALLED or n_still >= STILL_LIMIT:
+                return stopped, step, here, share
+            return_to_mode(work)
+            may_stay = setting.friction.greatest == 0.0 or find_mode(drive, position, quaternion, share, work) == FOUND
+            return_to_mode(work)
+            verdict, step, after, reached = rests_ahead(drive, here, share, to_share, step, step_limit, may_stay, work)
+            if reached == share:
+                return STALLED, step, here, share
+        note_snap(drive, here, after, first, step, share, reached, verdict, work)
         if verdict != RESTS:
-            return verdict, step, after, share
-        verdict = stopped_verdict(drive, position, quaternion, share, work)
-        if verdict != OPENS:
-            return verdict, step, here, share
-        opened, end, turned = opened_pose(drive, position, quaternion, work)
-        n_still += 1
-        if not opened or n_still >= STILL_LIMIT:
-            break
-        write_state(run.trace.rows[step], here)
-        position, quaternion = end, turned
-        if not stand_at(setting, position, quaternion, run):
-            break
+            return verdict, step, after, reached
+        position, quaternion, share, n_still = after.position, after.quaternion, reached, n_still + 1
         begin_at_rest(drive, work)
-        write_driven(drive, step, share, position, quaternion, True, work)
-        step += 1
+        if n_still > STILL_LIMIT:
+            break
     verdict = LIMIT if step >= step_limit else STALLED
     return verdict, step, State(position, quaternion, state.turn_step_rad, 0, 0), share

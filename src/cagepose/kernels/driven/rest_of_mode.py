@@ -48,9 +48,9 @@ LEAST_STIFFNESS = 1e-6
 """In lengths of the load over the size: what moves freely goes the shortest way."""
 ON_FACE, BALANCED = 4e-16, 1e-14
 """In sizes of the scene, and in lengths of the load's terms: rounding."""
-SOFT = 1e-8
-"""In stiffnesses: how much contacts give way across their faces in one step of Newton's method, so that those of which
-some would do share what they carry."""
+SOFT = 1e-7
+"""In stiffnesses: how much contacts give way in one step of Newton's method, so that those of which some would do share
+what they carry."""
 STUCK = 1e-14
 """In sizes of the scene: what a contact that sticks may slip."""
 NEARLY_ON_FACE, NEARLY_BALANCED = 4e-13, 1e-11
@@ -71,6 +71,8 @@ class RestWorkspace:
     slips
         How far each contact that counts, in their order, has slipped since the last rest, along its tangents, metres
         times their length. Given: up to the pose to start from.
+    gaps
+        The gap that each of them keeps, metres: rounding of an earlier rest, which one that sticks cannot close.
     """
 
     newton: NewtonWorkspace
@@ -80,6 +82,7 @@ class RestWorkspace:
     least_terms: float
     least_stiffness: float
     slips: Annotated[FloatArray, CARRYING_LIMIT, 2]
+    gaps: Annotated[FloatArray, CARRYING_LIMIT]
 
 
 @kernel
@@ -175,8 +178,9 @@ def write_system(contacts: ContactSet, friction: float, least: float, n: int, wo
                 m[first + which, k] = stiff * columns[which, k]
                 m[k, n] -= along * forces[which]
         m[first, first] = -SOFT * stiff
-        m[first, n] = stiff * contacts.rows[i].gap
+        m[first, n] = stiff * (contacts.rows[i].gap - work.gaps[place])
         for which in range(1, n_own):  # what sticks goes back to where it has slipped from
+            m[first + which, first + which] = -SOFT * stiff
             m[first + which, n] = -stiff * work.slips[place, which - 1]
         if newton.modes[place] == SLIPS:  # friction turns with the slip
             turning, turned = weights_of_turn(friction * forces[0], stiff * size)
@@ -231,9 +235,9 @@ def rest_of_mode(
     position, quaternion
         Where to start from.
     work
-        Given: the slips.
+        Given: the slips, and the gaps.
     """
-    friction, least_worst = setting.friction.greatest, math.inf
+    friction, least_worst, done = setting.friction.greatest, math.inf, False
     n = list_carrying(contacts, friction, work)
     for _ in range(MOST_STEPS if n > 0 else 0):
         frame = frame_at(setting.body, quaternion)
@@ -242,7 +246,7 @@ def rest_of_mode(
             i = work.newton.contacts[place]
             if not follow_contact(setting.geometry, placement, contacts, i, position, quaternion, frame).is_one:
                 return False, position, quaternion
-            worst_m = max(worst_m, abs(contacts.rows[i].gap))
+            worst_m = max(worst_m, abs(contacts.rows[i].gap - work.gaps[place]))
             if work.newton.modes[place] == STICKS:
                 slipped_m = math.sqrt(work.slips[place, 0] ** 2 + work.slips[place, 1] ** 2)
                 worst_m = max(worst_m, slipped_m * ON_FACE / STUCK)
@@ -254,12 +258,11 @@ def rest_of_mode(
             work.delta[k] = work.newton.matrix[k, n]
         left = length(work.delta, contacts.n_freedoms) / terms
         worst = max(worst_m / (ON_FACE * setting.size_m), left / BALANCED)
-        if worst <= 1.0 or worst >= least_worst:
-            done = worst_m <= NEARLY_ON_FACE * setting.size_m and left <= NEARLY_BALANCED
-            if worst <= 1.0 or done:
-                return True, position, quaternion
+        done = worst_m <= NEARLY_ON_FACE * setting.size_m and left <= NEARLY_BALANCED
+        if worst <= 1.0 or (worst >= least_worst and done):
+            return True, position, quaternion
         least_worst = min(least_worst, worst)
         take_step(contacts, friction, stiff, n, work)
         velocity, spin = twist_of(work.delta, frame)
         position, quaternion = moved_along_twist(position, quaternion, velocity, spin, 1.0)
-    return False, position, quaternion
+    return done, position, quaternion

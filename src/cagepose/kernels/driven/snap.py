@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from cagepose.kernels.algebra.least_squares import length
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, norm, scaled
 from cagepose.kernels.boundary.features import place_boundary
 from cagepose.kernels.boundary.geometry import deepest_overlap, held_at, place_object
-from cagepose.kernels.contact.metric import frame_at, moved_along_twist, twist_of, way_between
+from cagepose.kernels.contact.curvature import write_curvature
+from cagepose.kernels.contact.loads import write_load
+from cagepose.kernels.contact.metric import Frame, frame_at, moved_along_twist, twist_of, way_between
+from cagepose.kernels.driven.bodies import move_bodies, write_drift
+from cagepose.kernels.driven.forces_jump import go_along
+from cagepose.kernels.driven.rest_of_mode import list_carrying
 from cagepose.kernels.driven.stiffness import hold_carried, least_stiffness
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -21,6 +27,10 @@ PUSHES = (0.0, 1e-5, 1e-4, 1e-3, 1e-2)
 """In sizes of the scene: how far an object is pushed out of a balance that is lost, one after the other."""
 OPENED = 1e-3
 """In sizes of the scene: how far an object goes where that opens its contacts to second order."""
+AHEAD = (1e-4, 1e-3, 1e-2)
+"""Of a step: how far bodies go on, one after the other, where no mode is found with which the object follows."""
+CARRIES = 1e-9
+"""In greatest forces: what carries less is let go."""
 STAYS = 4.0
 """In pushes: an object that comes to rest no farther away has not snapped."""
 
@@ -55,6 +65,30 @@ def opened_pose(
 
 
 @kernel
+def find_softest(
+    drive: DriveSetting, position: Vector, quaternion: Quaternion, frame: Frame, work: DriveWorkspace
+) -> None:
+    """Write the motion with the least stiffness, of what contacts that carry leave free, into the first of the vectors
+    in the scratch. What carries next to nothing holds nothing.
+    """
+    setting, contacts, rest = drive.setting, work.run.contacts, work.scratch[0].rest
+    greatest, n = 0.0, contacts.n_freedoms
+    for i in range(contacts.used[0]):
+        greatest = max(greatest, contacts.states[i].forces[0] * length(contacts.rows[i].columns[0], n))
+    greatest = max(greatest, write_load(setting.load, position, quaternion, frame, rest.load))
+    for i in range(contacts.used[0]):
+        state = contacts.states[i]
+        state.counts = state.counts and state.forces[0] * length(contacts.rows[i].columns[0], n) > CARRIES * greatest
+    list_carrying(contacts, setting.friction.greatest, rest)
+    for place in range(rest.newton.n_carrying):
+        for which in range(2):
+            rest.slips[place, which] = contacts.states[rest.newton.contacts[place]].forces[1 + which]
+    write_curvature(contacts, setting.load, position, quaternion, frame, False, rest.curvature)
+    hold_carried(contacts, work)
+    least_stiffness(drive, contacts, rest.curvature, work)
+
+
+@kernel
 def snaps(
     drive: DriveSetting, state: State, first_step: int, step_limit: int, work: DriveWorkspace
 ) -> tuple[int, int, State]:
@@ -64,9 +98,8 @@ def snaps(
     It is pushed along what has the least stiffness, both ways, at first by nothing, then more and more.
     """
     setting, run, scratch = drive.setting, work.run, work.scratch[0]
-    hold_carried(run.ahead, work)
-    least_stiffness(drive, run.ahead, scratch.rest.curvature, work)
     frame = frame_at(setting.body, state.quaternion)
+    find_softest(drive, state.position, state.quaternion, frame, work)
     for k in range(run.contacts.n_freedoms):
         scratch.load[k] = scratch.vectors[k, 0]
     velocity, spin = twist_of(scratch.load, frame)
@@ -93,3 +126,41 @@ def snaps(
                 return verdict, step, after
     place_object(setting.geometry, state.position, state.quaternion, run.placement)
     return RESTS, first_step, state
+
+
+@kernel
+def rests_ahead(
+    drive: DriveSetting,
+    state: State,
+    share: float,
+    to_share: float,
+    first_step: int,
+    step_limit: int,
+    may_stay: bool,
+    work: DriveWorkspace,
+) -> tuple[int, int, State, float]:
+    """Let the bodies go on a little, the object with what carries it, and then go where it goes; return (verdict code,
+    number of all steps, state at the end, share). Nothing happens if it goes nowhere, but if it ``may_stay``.
+    """
+    setting, run, scratch, reach_m = drive.setting, work.run, work.scratch[0], drive.setting.body.reach_m
+    for i in range(run.contacts.used[0]):
+        write_drift(run.contacts, i, state.position, share, work.memory)
+    go_along(setting.friction.greatest, work)
+    velocity, spin = twist_of(scratch.way, frame_at(setting.body, state.quaternion))
+    for part in AHEAD:
+        ahead = part * (to_share - share)
+        move_bodies(setting.geometry, drive.phase, share + ahead, work.memory)
+        begin, turned = state.position, state.quaternion
+        if norm(velocity) + norm(spin) > 0.0:
+            begin, turned = moved_along_twist(begin, turned, velocity, spin, ahead)
+        if is_inside(drive, begin, turned, work):
+            break
+        begun = State(begin, turned, state.turn_step_rad, 0, 0)
+        verdict, step, after = steps_from(setting, begun, first_step, step_limit, run)
+        with_bodies = way_between(state.position, state.quaternion, begin, turned, reach_m)
+        away = way_between(begin, turned, after.position, after.quaternion, reach_m)
+        if (verdict == RESTS and may_stay) or away > max(STAYS * with_bodies, 1e-9 * setting.size_m):
+            return verdict, step, after, share + ahead
+    move_bodies(setting.geometry, drive.phase, share, work.memory)
+    place_object(setting.geometry, state.position, state.quaternion, run.placement)
+    return RESTS, first_step, state, share

@@ -8,7 +8,7 @@ from cagepose.kernels.algebra.elimination import eliminate
 from cagepose.kernels.algebra.least_squares import length
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.vector import Vector, norm
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.geometry import cage_at, held_moved
 from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.contact.coulomb_newton import CARRYING_LIMIT, SLIPS, STICKS, n_forces
@@ -36,7 +36,16 @@ STILL = 1e-9
 LEAP = 8.0
 """Times the way that the object, or a body, would go on: a rest that is farther away is another one."""
 NEXT_TO_NOTHING = 1e-12
-"""In greatest forces, in sizes of the scene, in slips: so far a guard may be below zero."""
+"""In sizes of the scene, in slips: so far a guard may be below zero."""
+NO_FORCE = 1e-9
+"""In greatest forces. Likewise: what a rest leaves of the balance, contacts that carry nothing share."""
+LITTLE = 1e-5
+"""Of a step: so far a mode is tried."""
+BEGINS = 1e-9
+"""In sizes of the scene: a contact that begins to slip is taken to have slipped so far, so that its friction has a
+direction."""
+KEPT_GAP = 1e-10
+"""In sizes of the scene: a gap that a contact which sticks keeps."""
 LEAST_STABLE = 1e-9
 """In the stiffness: what is no more unstable than this is indifferent."""
 
@@ -48,25 +57,84 @@ def first_of_others() -> int:
 
 
 @kernel
-def begin_trial(drive: DriveSetting, ahead: float, work: DriveWorkspace) -> None:
+def begin_trial(drive: DriveSetting, share: float, ahead: float, work: DriveWorkspace) -> None:
     """Copy the contacts with their mode, and how far they slip on an advance: one that has stuck so far begins to slip
     where its friction resists it.
     """
     contacts, trial, rest = work.run.contacts, work.run.ahead, work.scratch[0].rest
     way = work.scratch[0].way
-    slow = NO_SLIP * speed_of(contacts, way)
+    still = (0.0, 0.0, 0.0)
+    slow = NO_SLIP * max(speed_of(contacts, way), fastest_of(drive, share, still, still, work))
     trial.used[0] = contacts.used[0]
     for i in range(contacts.used[0]):
         copy_contact(contacts, i, trial, i)
     list_carrying(trial, drive.setting.friction.greatest, rest)
     for place in range(rest.newton.n_carrying):
-        forces = contacts.states[rest.newton.contacts[place]].forces
+        forces, gap = (
+            contacts.states[rest.newton.contacts[place]].forces,
+            contacts.rows[rest.newton.contacts[place]].gap,
+        )
+        is_kept = rest.newton.modes[place] == STICKS and abs(gap) <= KEPT_GAP * drive.setting.size_m
+        rest.gaps[place] = gap if is_kept else 0.0
         one, two = slip_of(contacts, rest.newton.contacts[place], way)
         resists = math.sqrt(forces[1] ** 2 + forces[2] ** 2)
         begins = rest.newton.modes[place] == SLIPS and math.sqrt(one * one + two * two) <= slow
-        if begins and resists > 0.0:
-            one, two = slow * forces[1] / resists, slow * forces[2] / resists
         rest.slips[place, 0], rest.slips[place, 1] = one * ahead, two * ahead
+        if begins and resists > 0.0:
+            least_m = max(slow * ahead, BEGINS * drive.setting.size_m)
+            for which in range(2):
+                rest.slips[place, which] = least_m * forces[1 + which] / resists
+
+
+@kernel
+def worst_gap(drive: DriveSetting, position: Vector, quaternion: Quaternion, work: DriveWorkspace) -> float:
+    """Return the greatest gap, in or out, of what carries at a pose, metres; inf: one of them meets nothing there."""
+    setting, trial, newton, worst = drive.setting, work.run.ahead, work.scratch[0].rest.newton, 0.0
+    frame = frame_at(setting.body, quaternion)
+    for place in range(newton.n_carrying):
+        i = newton.contacts[place]
+        if not follow_contact(setting.geometry, work.run.placement, trial, i, position, quaternion, frame).is_one:
+            return math.inf
+        worst = max(worst, abs(trial.rows[i].gap))
+    return worst
+
+
+@kernel
+def go_on(
+    drive: DriveSetting, position: Vector, quaternion: Quaternion, share: float, to_share: float, work: DriveWorkspace
+) -> tuple[Vector, Quaternion]:
+    """Return a pose where the way of the scratch leads to: a screw, as of what turns about a corner; or straight on, as
+    of what rolls, if that keeps what carries nearer to its faces. What sticks has slipped there by the mean of how fast
+    it slips at both ends, as its place moves where it rolls.
+    """
+    setting, trial, rest, ahead = drive.setting, work.run.ahead, work.scratch[0].rest, to_share - share
+    velocity, spin = twist_of(work.scratch[0].way, frame_at(setting.body, quaternion))
+    if norm(velocity) + norm(spin) == 0.0:
+        return position, quaternion
+    end, turned = moved_along_twist(position, quaternion, velocity, spin, ahead)
+    goes = plus(velocity, cross(spin, minus(end, position)))
+    sticks = False
+    for place in range(rest.newton.n_carrying):
+        sticks = sticks or rest.newton.modes[place] == STICKS
+    if not sticks:
+        return end, turned
+    off, straight = worst_gap(drive, end, turned, work), plus(position, scaled(velocity, ahead))
+    if off > NEXT_TO_NOTHING * setting.size_m:
+        if worst_gap(drive, straight, turned, work) < off:
+            end, goes = straight, velocity
+        else:
+            worst_gap(drive, end, turned, work)
+    for place in range(rest.newton.n_carrying):
+        i = rest.newton.contacts[place]
+        if rest.newton.modes[place] != STICKS:
+            continue
+        write_drift(trial, i, end, to_share, work.memory)
+        row = trial.rows[i]
+        along = plus(goes, cross(spin, vector_from(row.arm)))
+        for which in range(2):
+            slips = (dot(vector_from(row.directions[1 + which]), along) + row.drift[1 + which]) * ahead
+            rest.slips[place, which] = 0.5 * (rest.slips[place, which] + slips)
+    return end, turned
 
 
 @kernel
@@ -78,14 +146,12 @@ def try_share(
     """
     scratch, setting = work.scratch[0], drive.setting
     ahead = to_share - share
-    begin_trial(drive, ahead, work)
+    begin_trial(drive, share, ahead, work)
     move_bodies(setting.geometry, drive.phase, to_share, work.memory)
-    velocity, spin = twist_of(scratch.way, frame_at(setting.body, quaternion))
-    end, turned = position, quaternion
-    if norm(velocity) + norm(spin) > 0.0:
-        end, turned = moved_along_twist(position, quaternion, velocity, spin, ahead)
+    end, turned = go_on(drive, position, quaternion, share, to_share, work)
     found, end, turned = rest_of_mode(setting, work.run.placement, work.run.ahead, end, turned, scratch.rest)
     moved = way_between(position, quaternion, end, turned, setting.body.reach_m)
+    velocity, spin = twist_of(scratch.way, frame_at(setting.body, quaternion))
     most = LEAP * ahead * fastest_of(drive, share, velocity, spin, work) + STILL * setting.size_m
     scratch.leap = (most - moved) / most
     return found, end, turned
@@ -170,7 +236,7 @@ def write_guards(
     frame = frame_at(setting.body, quaternion)
 
     # What carries: forces above zero, inside their cones, and along the slip.
-    greatest = scratch.rest.least_terms * NEXT_TO_NOTHING
+    greatest = scratch.rest.least_terms * NO_FORCE
     for i in range(trial.used[0]):
         if trial.states[i].counts:
             greatest = max(greatest, trial.states[i].forces[0] * length(trial.rows[i].columns[0], n))
@@ -179,10 +245,10 @@ def write_guards(
     for place in range(rest.newton.n_carrying):
         i = rest.newton.contacts[place]
         forces, size = trial.states[i].forces, length(trial.rows[i].columns[0], n)
-        out[OF_CARRYING * place] = forces[0] * size / greatest + NEXT_TO_NOTHING
+        out[OF_CARRYING * place] = forces[0] * size / greatest + NO_FORCE
         if rest.newton.modes[place] == STICKS:
             spare = friction * forces[0] - math.sqrt(forces[1] ** 2 + forces[2] ** 2)
-            out[OF_CARRYING * place + 1] = spare * size / greatest + NEXT_TO_NOTHING
+            out[OF_CARRYING * place + 1] = spare * size / greatest + NO_FORCE
         slips = slips or rest.newton.modes[place] == SLIPS
     if slips:
         write_way(drive, position, quaternion, share, -APART, work)

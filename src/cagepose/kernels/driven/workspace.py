@@ -38,6 +38,8 @@ class DriveScratch:
     greatest, greatest_at, work, rubbed, lost
         Of the phase so far: the greatest sum of the drivers' forces along their ways, and after which share; their
         work, what friction took of it, and what was lost where the object snapped.
+    kept_forces, kept_sticking, kept_contacts, n_kept
+        What contacts did before other modes were tried.
     leap
         How far a trial is from leaping to another rest: below zero, it does.
     least_jam
@@ -62,6 +64,10 @@ class DriveScratch:
     work: float
     rubbed: float
     lost: float
+    kept_forces: Annotated[FloatArray, CARRYING_LIMIT, 3]
+    kept_sticking: Annotated[IntArray, CARRYING_LIMIT]
+    kept_contacts: Annotated[IntArray, CARRYING_LIMIT]
+    n_kept: int
     leap: float
     least_jam: float
     n_hits: int
