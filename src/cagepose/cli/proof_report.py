@@ -61,7 +61,7 @@ def _drive_lines(run: Run, number: int, drive: DriveCheck) -> Iterator[str]:
     yield "drive: nothing is said of what lies between the places"
     if drive.stopped == "blocked":
         free = counted((drive.n_free, "freedom is", "freedoms are")) or "no freedom is"
-        yield f"blocked: normal forces stand against the drive; {free} left, along which what opens to second order is not checked"
+        yield f"blocked: normal forces stand against the drive; {free} left, to second order not checked"
     elif drive.stopped == "jams":
         cases = counted((drive.n_leaves, "case", "cases"))
         yield f"jams: in none of {cases} there is a motion in which the drive goes on; without friction there is one"

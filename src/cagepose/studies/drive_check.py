@@ -154,16 +154,16 @@ class _CheckedPlace:
         problem, own = self.own.problem, self.own
         if not np.isfinite(motion).all():
             raise CertificateError(f"{where}.motion has a number that is not finite")
-        size = own.speed + float(np.linalg.norm(problem.scaled_twist(motion)))
+        least = SPEED_OF_GIVING_WAY * own.speed
         moving = problem.wrenches[at] @ motion + own.drifts[at]
         margins = -moving[:, 0] - friction * np.hypot(moving[:, 1], moving[:, 2])
         lengths = np.linalg.norm(problem.scaled(problem.wrenches[at, 0]), axis=1)
-        for place, margin in zip(at, (margins + SPEED_OF_GIVING_WAY * size * lengths).tolist(), strict=True):
+        for place, margin in zip(at, (margins + least * lengths).tolist(), strict=True):
             if not margin >= 0.0:
                 raise CertificateError(
                     f"{where}.motion does not give way to {problem.faces[place]}: it opens {-margin:.1e} m too slowly"
                 )
-        if growth.any() and not growth @ motion > SPEED_OF_GIVING_WAY * size * own.growth_size:
+        if growth.any() and not growth @ motion > least * own.growth_size:
             raise CertificateError(f"{where}.motion does not give way to the growth of the load")
         return float(margins.min(initial=np.inf)) / own.speed
 

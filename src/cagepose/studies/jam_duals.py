@@ -99,12 +99,13 @@ def _ask(
         if grows:
             rows, bounds = np.vstack([rows, -growth]), np.append(bounds, -fastest)
         twist = np.zeros(6)
-        if not shortest_inside(rows, bounds, empty_system(len(rows)), passive, twist):
+        is_found = shortest_inside(rows, bounds, empty_system(len(rows)), passive, twist)
+        if not is_found or not np.isfinite(twist).all():  # so long that there is none
             return _forces(passive, contacts, along, sizes, n, grows) if margin == 0.0 else None
         moving = columns @ twist + drifts
         slips = np.hypot(moving[:, 1], moving[:, 2])
         beyond = (moving[:, 0] + friction * slips) / sizes + margin
-        allowed = max(0.5 * margin, SPEED_OF_GIVING_WAY * max(1.0, float(np.linalg.norm(twist))))
+        allowed = max(0.5 * margin, 0.5 * SPEED_OF_GIVING_WAY)
         wrong = np.flatnonzero(beyond > allowed)
         if not wrong.size:
             return GivesWay(twist, margin)

@@ -68,8 +68,8 @@ DISTANCE_OF_CORNER = 1e-3
 outside."""
 MARGINS_OF_JAMS = (0.1, 1e-2, 1e-3, 1e-4, 1e-6, 0.0)
 """In drifts. A motion that gives way is looked for with these margins, one after the other."""
-SPEED_OF_GIVING_WAY = 1e-11
-"""In lengths of motion and drift. A contact that opens more slowly than it must by less gives way by rounding."""
+SPEED_OF_GIVING_WAY = 1e-9
+"""In drifts. A contact that opens more slowly than it must by less gives way by rounding, however fast the motion."""
 FORCES_THAT_CANCEL = 1e-8
 """In what forces add up to. They cancel if they leave at most this."""
 SAME_DRIFT = 1e-9
