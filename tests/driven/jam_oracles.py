@@ -16,11 +16,13 @@ from cagepose.studies.driven_contacts import DrivenContacts
 
 SIDES = 64
 """Of the cones in which it is asked whether forces stand."""
-SECTORS, SECTORS_OF_CONE = 4, 64
+SECTORS, SECTORS_OF_CONE = 4, 24
 """Of slips, at first, and of the cones of what may stick."""
 NARROWEST, VIOLATED = 1e-4, 1e-6
 """Radians, of sectors that are not halved again; and power by which a motion may violate Coulomb's law."""
 MOST_NODES = 4000
+EXACT = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
+"""The least that HiGHS takes."""
 TOUCHES = 1e-9
 """Of what HiGHS leaves: a work of so little is none."""
 
@@ -51,7 +53,7 @@ def most_work(contacts: DrivenContacts, friction: FloatArray, sides: int = SIDES
         matrix = np.vstack([matrix, -problem.scaled(contacts.growth) / contacts.growth_size])
         gain = np.append(gain, contacts.fastest / speed)
     rows = np.vstack([matrix.T, np.ones(len(matrix))])
-    found = linprog(-gain, A_eq=rows, b_eq=np.eye(7)[6], bounds=(0, None), method="highs")
+    found = linprog(-gain, A_eq=rows, b_eq=np.eye(7)[6], bounds=(0, None), options=EXACT)
     return -float(found.fun) if found.status == 0 else -math.inf
 
 
@@ -187,7 +189,7 @@ def _motion(contacts: DrivenContacts, drag: float, modes: list[Mode]) -> tuple[F
         A_ub=np.array([np.append(row, wide) for row in most]) if most else None,
         b_ub=at_most if most else None,
         bounds=[(None, None)] * 6 + [(0, None)] * len(wide),
-        method="highs",
+        options=EXACT,
     )
     if found.status != 0:
         return None
