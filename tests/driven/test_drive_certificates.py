@@ -208,3 +208,25 @@ def test_a_phase_that_drives_nothing_has_no_drive() -> None:
         a_run = run(load_scene(SCENES / "rail-yaw.yaml"), method)
         assert [phase.drive for phase in a_run.phases] == [None, None]
     assert re.match("<Certificate: strong", repr(certificate(run(load_scene(SCENES / "ladder.yaml")))))
+
+
+@pytest.mark.parametrize(("name", "said"), [("dock", "cannot jam"), ("drawer-jams", "could jam"), ("jaws", "blocked")])
+def test_the_lines_of_the_theory_check_a_saved_run(
+    name: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = (ROOT / "docs" / "theory" / "driven.md").read_text(encoding="utf-8")
+    (by_hand,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    a_run, _ = certified(name)
+    save_run(a_run, tmp_path / "run.json")
+    monkeypatch.chdir(tmp_path)
+    exec(by_hand, {})
+    assert said in capsys.readouterr().out
+    text = (tmp_path / "run.json").read_text(encoding="utf-8")
+    content = json.loads(text)
+    for place in content["certificates"][-1]["drive"]["places"]:
+        place["drifts"] = [[-number for number in drift] for drift in place["drifts"]]
+        for choice in place["choices"]:
+            choice["motion"] = choice["motion"] and [-number for number in choice["motion"]]
+    (tmp_path / "run.json").write_text(json.dumps(content), encoding="utf-8")
+    with pytest.raises(AssertionError):
+        exec(by_hand, {})
