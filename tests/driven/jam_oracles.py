@@ -27,6 +27,10 @@ TOUCHES = 1e-9
 """Of what HiGHS leaves: a work of so little is none."""
 
 
+class TooManyModesError(Exception):
+    """The search of modes was given up."""
+
+
 def wider(mu: FloatArray, sides: int = SIDES) -> FloatArray:
     """Coefficients whose cone of so many sides goes around the round one."""
     return mu / math.cos(math.pi / sides)
@@ -93,14 +97,14 @@ def way_on(contacts: DrivenContacts, drag: float) -> FloatArray | None:
 
     Raises
     ------
-    RuntimeError
+    TooManyModesError
         There are too many cases, or a narrow sector neither has a motion nor has none.
     """
     waiting, n_asked = [[Mode()] * len(contacts.problem.faces)], 0
     while waiting:
         modes, n_asked = waiting.pop(), n_asked + 1
         if n_asked > MOST_NODES:
-            raise RuntimeError("too many modes")
+            raise TooManyModesError
         found = _motion(contacts, drag, modes)
         if found is None:
             continue
@@ -110,7 +114,7 @@ def way_on(contacts: DrivenContacts, drag: float) -> FloatArray | None:
             return velocities
         mode = modes[worst]
         if not is_opening and mode.slips and mode.width < NARROWEST:
-            raise RuntimeError("a narrow sector is open")
+            raise TooManyModesError
         angle = math.atan2(velocities[worst, 2], velocities[worst, 1])
         waiting += [[*modes[:worst], part, *modes[worst + 1 :]] for part in _parts(mode, is_opening, angle)]
     return None

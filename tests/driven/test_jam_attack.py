@@ -12,7 +12,7 @@ from cagepose.studies.drive_proof import DrivenPlace
 from cagepose.studies.driven_contacts import DriveContacts, DrivenContacts
 from driven.drawn_jams import KINDS, drawer, drawn
 from driven.driven_scenes import wedge
-from driven.jam_oracles import least_friction, most_work, stands, way_on, wider
+from driven.jam_oracles import TooManyModesError, least_friction, most_work, stands, way_on, wider
 
 LESS_FRICTION = 1.0 - 1e-3
 """With 64 sides a pyramid inside of a cone is that much narrower, and a little more."""
@@ -92,7 +92,7 @@ def test_no_mode_goes_on_where_a_drive_jams(drag: float, cases, say) -> None:
     """Drawers against a force, and wedges. Where nothing resists, a motion needs no forces: there is no way on with
     drag alone.
     """
-    random, n_jams = np.random.default_rng(62), 0
+    random, n_jams, n_open = np.random.default_rng(62), 0, 0
     n = cases(10, 400)
     for index in range(n):
         heavy = wedge(friction=float(random.uniform(0.0, 1.2)), wall_friction=float(random.uniform(1.5, 3.0)))
@@ -101,10 +101,16 @@ def test_no_mode_goes_on_where_a_drive_jams(drag: float, cases, say) -> None:
         if phase.verdict != "jams" or (drag == 0.0 and scene.name == "drawer" and not scene.loads[0].pushes):
             continue
         known = DriveContacts(a_run, 0)
-        assert way_on(known.at_row(known.rows()[-1]), drag) is None
+        try:
+            found = way_on(known.at_row(known.rows()[-1]), drag)
+        except TooManyModesError:
+            n_open += 1
+            continue
+        assert found is None
         n_jams += 1
-    say(f"{n_jams} of {n} jam, and no mode of theirs goes on")
+    say(f"{n_jams} of {n} jam, and no mode of theirs goes on; {n_open} have too many modes to ask them all")
     assert n_jams > 1
+    assert n_open <= 1 + n_jams // 10
 
 
 def test_a_mode_is_found_that_goes_on() -> None:
