@@ -82,6 +82,16 @@ def stands_by_the_growth_alone(choice: JamChoice) -> JamChoice:
     return replace(choice, motion=None, forces=np.zeros((len(choice.contacts), 3)), taken=1.0)
 
 
+def pressed_without_work(place: DrivenPlace) -> DrivenPlace:
+    """Of a drawer: its two pins press against each other along the line between them, and the finger does not."""
+    pins = [[face.point for face in place.contacts].index(name) for name in ("rear pin", "front pin")]
+    across = place.places_world[pins[0]] - place.places_world[pins[1]]
+    (choice,), forces = place.choices, np.zeros((len(place.contacts), 3))
+    for pin, sign in zip(pins, (1.0, -1.0), strict=True):
+        forces[choice.contacts.index(pin)] = place.directions_world[pin] @ (sign * across)
+    return replace(place, choices=(replace(choice, forces=forces),))
+
+
 FORGED: list[tuple[str, Change, str]] = [
     # cannot jam
     ("dock", of_jam(motion=lambda motion: 0.0 * motion), "does not give way to"),
@@ -96,6 +106,7 @@ FORGED: list[tuple[str, Change, str]] = [
     ("drawer-jams", of_jam(forces=lambda forces: 0.0 * forces), "leave their friction cones"),
     ("drawer-jams", of_jam(forces=lambda forces: forces * (1, 2, 2)), "leave their friction cones"),
     ("drawer-jams", of_jam(forces=lambda forces: forces[:-1]), "are not three numbers"),
+    ("drawer-jams", lambda given: with_place(given, pressed_without_work), "give way to the drive: their work on it is 0"),
     ("peg", lambda given: with_jam(given, stands_by_the_growth_alone), "do not cancel"),
     # what touches, and how it drifts
     ("dock", lambda given: with_place(given, without_a_contact), "contacts leave out"),
