@@ -106,7 +106,7 @@ FORGED: list[tuple[str, Change, str]] = [
     ("drawer-jams", of_jam(forces=lambda forces: 0.0 * forces), "leave their friction cones"),
     ("drawer-jams", of_jam(forces=lambda forces: forces * (1, 2, 2)), "leave their friction cones"),
     ("drawer-jams", of_jam(forces=lambda forces: forces[:-1]), "are not three numbers"),
-    ("drawer-jams", lambda given: with_place(given, pressed_without_work), "give way to the drive: their work on it is 0"),
+    ("drawer-jams", lambda given: with_place(given, pressed_without_work), "their work on it is 0"),
     ("peg", lambda given: with_jam(given, stands_by_the_growth_alone), "do not cancel"),
     # what touches, and how it drifts
     ("dock", lambda given: with_place(given, without_a_contact), "contacts leave out"),
