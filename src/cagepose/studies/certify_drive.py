@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from cagepose.errors import CertificateError
 from cagepose.kernels.algebra.least_squares import WRENCH
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.kernels.contact.friction import friction_of
@@ -30,14 +31,18 @@ from cagepose.studies.tolerances import SAME_FREEDOM
 
 def drive_proof(run: Run, phase: int) -> DriveProof | None:
     """Return what is proven of the drive of a phase, counted from 0; None: nothing was driven, or at some place there
-    are more than 729 choices of faces, or rounding leaves it open whether the object could jam.
+    are more than 729 choices of faces, or more contacts than there is memory for, or rounding leaves it open whether
+    the object could jam.
     """
     if run.phases[phase].drive is None:
         return None
     known = DriveContacts(run, phase)
     places, last = list[DrivenPlace](), None
     for row in known.rows():
-        last = known.at_row(row)
+        try:
+            last = known.at_row(row)
+        except CertificateError:
+            return None
         choices = _choices(last)
         found = None if choices is None else [_jam_choice(last, choice) for choice in choices]
         if found is None or None in found:
