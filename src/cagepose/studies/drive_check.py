@@ -49,7 +49,8 @@ class DriveCheck:
     n_leaves
         "jams": how many cases its trees tell apart.
     speed
-        "blocked", "jams": in a motion that the proof does not rule out the drive is no more than this share of it.
+        "blocked", "jams": in a motion that the proof does not rule out the drive is no more than this share of it, with
+        forces that add up to no more than the motion.
     n_free
         "blocked": so many freedoms are left along which the contacts that carry open to second order at the first.
         That they do not open then is the kernels' word, and not checked. Zero: there is nothing left to check.
