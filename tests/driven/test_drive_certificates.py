@@ -195,11 +195,20 @@ def test_certificates_of_drives_are_saved_with_a_run_and_checked_by_the_command(
     assert "the certificate is wrong: drive, row" in capsys.readouterr().out
 
 
-def test_the_command_takes_no_changes_of_a_saved_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_takes_no_changes_of_a_saved_run_and_none_without_certificates(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     a_run, _ = certified("drawer-jams")
     save_run(a_run, tmp_path / "run.json")
     assert main(["check", str(tmp_path / "run.json"), "--set", "friction.coefficient=1"]) == 2
     assert "is a saved run; name the scene file" in capsys.readouterr().err
+    content = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    del content["certificates"]
+    (tmp_path / "old.json").write_text(json.dumps(content), encoding="utf-8")
+    assert main(["check", str(tmp_path / "old.json")]) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert "has no certificates" in told.err
 
 
 def test_a_phase_that_drives_nothing_has_no_drive() -> None:

@@ -18,9 +18,9 @@ def check_saved_run(path: str) -> int:
     from cagepose.files.run_file import load_certificates, load_run
     from cagepose.studies.certificate_check import check_certificate
 
-    run, is_wrong = load_run(path), False
+    run, certificates, is_wrong = load_run(path), load_certificates(path), False
     sys.stdout.write(printable(f"{run.scene.name}: saved run, method {run.method}") + "\n")
-    for number, (phase, found) in enumerate(zip(run.phases, load_certificates(path), strict=False)):
+    for number, (phase, found) in enumerate(zip(run.phases, certificates, strict=False)):
         if found is None:
             lines = ["it has no certificate: nothing is proven"]
         else:
