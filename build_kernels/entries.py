@@ -20,6 +20,7 @@ from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.collision.boxes import BoxesAndPoints, empty_placed_boxes, place_boxes_at
 from cagepose.kernels.contact.loads import Action
 from cagepose.kernels.contact.metric import Body
+from cagepose.kernels.driven.jam_proof import search_jam
 from cagepose.kernels.driven.run import repeat_quasistatic, run_quasistatic, run_quasistatic_cases
 from cagepose.kernels.driven.workspace import empty_drive_workspace
 from cagepose.kernels.outcome.at_pose import critical_friction, judge_start
@@ -27,6 +28,7 @@ from cagepose.kernels.outcome.cases import Cases, Part
 from cagepose.kernels.outcome.drives import Drives, Leg
 from cagepose.kernels.outcome.endings import empty_endings
 from cagepose.kernels.outcome.records import empty_outcome
+from cagepose.kernels.outcome.touching_at import find_touching
 from cagepose.kernels.play.certificate import certify, empty_certificate_workspace
 from cagepose.kernels.play.clearances import LimitingGap, find_limiting_gaps
 from cagepose.kernels.play.escape import Station, grow_tree
@@ -104,6 +106,8 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield critical_friction, (0, part, cases, cage, proof)
     yield balance_with_faces, (0.0, proof)
     yield search_with_faces, (0.0, proof)
+    yield find_touching, (0, part, cases, cage, proof)
+    yield search_jam, (0.0, numbers, numbers, proof)
 
     rules, work = QuasistaticRules(0.0, 1), empty_drive_workspace(geometry, 1, 1, 1, 1)
     yield run_quasistatic, (part, cases, rules, work, outcome)

@@ -70,7 +70,6 @@ if TYPE_CHECKING:
     from cagepose.sampling.study import Study as Study
     from cagepose.studies.certificate import Certificate as Certificate
     from cagepose.studies.certificate import ChosenFaces as ChosenFaces
-    from cagepose.studies.certificate import ModeTree as ModeTree
     from cagepose.studies.certificate import OtherOnset as OtherOnset
     from cagepose.studies.certificate_check import CertificateCheck as CertificateCheck
     from cagepose.studies.certificate_check import check_certificate as check_certificate
@@ -79,9 +78,15 @@ if TYPE_CHECKING:
     from cagepose.studies.comparison import Parting as Parting
     from cagepose.studies.comparison import Variant as Variant
     from cagepose.studies.comparison import compare as compare
+    from cagepose.studies.drive_check import DriveCheck as DriveCheck
+    from cagepose.studies.drive_proof import DrivenPlace as DrivenPlace
+    from cagepose.studies.drive_proof import DriveProof as DriveProof
+    from cagepose.studies.drive_proof import JamChoice as JamChoice
+    from cagepose.studies.drive_proof import StopChoice as StopChoice
     from cagepose.studies.margin import ContactMargin as ContactMargin
     from cagepose.studies.margin import Margin as Margin
     from cagepose.studies.margin import margin as margin
+    from cagepose.studies.mode_tree import ModeTree as ModeTree
     from cagepose.studies.play import play as play
     from cagepose.studies.play_result import Play as Play
     from cagepose.studies.touched_faces import ContactFace as ContactFace
@@ -123,11 +128,14 @@ _HOMES = {
     "cagepose.sampling.design_results": ("DesignResults",),
     "cagepose.sampling.results": ("StudyResults",),
     "cagepose.sampling.study": ("Study",),
-    "cagepose.studies.certificate": ("Certificate", "ChosenFaces", "ModeTree", "OtherOnset"),
+    "cagepose.studies.certificate": ("Certificate", "ChosenFaces", "OtherOnset"),
     "cagepose.studies.certificate_check": ("CertificateCheck", "check_certificate"),
     "cagepose.studies.certify": ("certificate",),
     "cagepose.studies.comparison": ("Comparison", "Parting", "Variant", "compare"),
+    "cagepose.studies.drive_check": ("DriveCheck",),
+    "cagepose.studies.drive_proof": ("DrivenPlace", "DriveProof", "JamChoice", "StopChoice"),
     "cagepose.studies.margin": ("ContactMargin", "Margin", "margin"),
+    "cagepose.studies.mode_tree": ("ModeTree",),
     "cagepose.studies.play": ("play",),
     "cagepose.studies.play_result": ("Play",),
     "cagepose.studies.touched_faces": ("ContactFace",),
@@ -160,12 +168,16 @@ __all__ = [
     "DesignResults",
     "Disc",
     "Drive",
+    "DriveCheck",
+    "DriveProof",
+    "DrivenPlace",
     "Facets",
     "Event",
     "Force",
     "Frame",
     "FreeMotion",
     "Hole",
+    "JamChoice",
     "KernelsError",
     "Load",
     "Margin",
@@ -190,6 +202,7 @@ __all__ = [
     "Shape",
     "Sphere",
     "Spring",
+    "StopChoice",
     "Study",
     "StudyFolderError",
     "StudyResults",

@@ -5,7 +5,7 @@
     │   └── SceneFileError   the same, found in a scene file: each place has its line and column
     ├── StudyFolderError     a folder that holds no study, another one, or a damaged part
     ├── RunFileError         a saved run that cannot be read
-    ├── CertificateError     a certificate of rest that proves nothing
+    ├── CertificateError     a certificate that proves nothing
     ├── MissingExtraError    a part of cagepose that is not installed
     └── KernelsError         the machine code that is built with cagepose is missing, or does not fit
 
@@ -93,7 +93,7 @@ class RunFileError(CageposeError, ValueError):
 
 
 class CertificateError(CageposeError, ValueError):
-    """A certificate of rest that proves nothing: for another scene or pose, incomplete, or with a wrong number."""
+    """A certificate that proves nothing: for another scene or pose, incomplete, or with a wrong number."""
 
 
 class MissingExtraError(CageposeError, ImportError):

@@ -115,7 +115,7 @@ def test_a_missing_matplotlib_is_told_with_its_remedy(
     assert [path.name for path in Path().iterdir()] == ["scene.yaml"]
 
 
-@pytest.mark.parametrize("name", ["run", "check", "play", "compare"])
+@pytest.mark.parametrize("name", ["run", "play", "compare"])
 def test_what_asks_for_a_scene_says_that_it_got_a_saved_run(command: Command, sample: str, name: str) -> None:
     command("run", sample, "--out", "run.json")
     answer = command(name, "run.json")

@@ -99,3 +99,11 @@ def test_all_along_the_curve(insertion: Insertion) -> None:
         peak = int(np.argmax(curve.along))
         assert (np.diff(curve.along[peak:]) < 0.0).all()
         assert phase.drive.greatest_along == pytest.approx(float(curve.along[peak]))
+
+
+def test_a_peg_that_meets_nothing_ends_where_its_springs_pull_on_nothing() -> None:
+    """It is let go 2 mm deep in a wide hole, and lowered: at the end what acts on it is exactly zero."""
+    wide = Insertion(5.356798247868486, 0.4946953135514683, 0.010276591631677191, 0.028982384485584187)
+    (phase,) = run(wide.scene(2.0, [21.855535003446633], "square")).phases
+    assert (phase.verdict, phase.contacts) == ("rests", ())
+    assert (phase.proof.largest_force, phase.proof.gap_work) == (0.0, 0.0)

@@ -44,7 +44,10 @@ COMMANDS = {
         "cagepose.cli.play_command:play_command",
         "How far the object can move in its cage, and whether it can get out.",
     ),
-    "check": ("cagepose.cli.check_command:check_command", "Check a scene file without running it."),
+    "check": (
+        "cagepose.cli.check_command:check_command",
+        "Check a scene file without running it, or the proofs of a saved run.",
+    ),
     "plot": ("cagepose.cli.plot_command:plot_command", "Draw a scene's run, or a saved run, into a picture file."),
     "view": (
         "cagepose.cli.view_command:view_command",

@@ -1,11 +1,12 @@
-"""``cagepose check``: is this scene file right?"""
+"""``cagepose check``: is this scene file right, or are the proofs of this saved run?"""
 
 from __future__ import annotations
 
 import sys
 from typing import TYPE_CHECKING
 
-from cagepose.cli.options import SceneArgument, SetOption
+from cagepose.cli.options import SetOption
+from cagepose.cli.run_source import RunOrSceneArgument
 
 if TYPE_CHECKING:
     from cagepose.files.units import LengthUnit
@@ -13,9 +14,10 @@ if TYPE_CHECKING:
     from cagepose.model.scene import Scene
 
 
-def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int:
-    """Print what the scene holds, or every problem found."""
+def check_command(run_or_scene: RunOrSceneArgument, /, *, set_values: SetOption = ()) -> int:
+    """Print what a scene holds, or every problem found; of a saved run, what its certificates prove."""
     from cagepose.errors import printable
+    from cagepose.files.read import looks_like_run
     from cagepose.files.scene_file import read_scene_file
     from cagepose.files.units import from_metres
     from cagepose.model.geometry import body_limits
@@ -23,7 +25,9 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
     from cagepose.model.wording import counted
     from cagepose.runs.methods import chosen_method
 
-    scene_file = read_scene_file(scene, set_values)
+    if looks_like_run(run_or_scene):
+        return _check_run(run_or_scene, set_values)
+    scene_file = read_scene_file(run_or_scene, set_values)
     found, unit = scene_file.scene, scene_file.length_unit
     size = float(from_metres(found.size_m, unit))
     touch = float(from_metres(found.touch_m, unit))
@@ -51,6 +55,17 @@ def check_command(scene: SceneArgument, /, *, set_values: SetOption = ()) -> int
     for remark in remarks(found):
         sys.stdout.write(printable(f"remark: {remark}") + "\n")
     return 0
+
+
+def _check_run(path: str, set_values: tuple[str, ...]) -> int:
+    from cagepose.cli.proof_report import check_saved_run
+    from cagepose.errors import printable
+
+    if set_values:
+        message = f"--set: changes a scene, but {path} is a saved run; name the scene file"
+        sys.stderr.write(printable(message) + "\n")
+        return 2
+    return check_saved_run(path)
 
 
 def _extent(limits_m: FloatArray, unit: LengthUnit) -> str:

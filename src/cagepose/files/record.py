@@ -220,7 +220,13 @@ def _array(shape: tuple[int, ...]) -> Any:
     rows: Any = float
     for length in reversed(shape):
         rows = list[rows] if length < 0 else Annotated[list[rows], Field(min_length=length, max_length=length)]
-    return Annotated[rows, AfterValidator(partial(np.array, dtype=np.float64))]
+    return Annotated[rows, AfterValidator(partial(_filled, shape))]
+
+
+def _filled(shape: tuple[int, ...], rows: list[Any]) -> np.ndarray:
+    """Return nested lists as an array; where they are empty, the lengths within them are those of ``shape``."""
+    found = np.array(rows, dtype=np.float64)
+    return found.reshape(found.shape + tuple(max(length, 0) for length in shape[found.ndim :]))
 
 
 def _number(infinite: str | None, value: object, read: Callable[[object], float]) -> float:

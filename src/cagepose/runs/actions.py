@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -142,11 +143,17 @@ def tensions_at_zero(
     return kept
 
 
+_MIDDLES: WeakKeyDictionary[Scene, FloatArray] = WeakKeyDictionary()
+
+
 def cage_middle(scene: Scene) -> FloatArray:
-    """Return the middle of all points, shapes and holes of the cage that stand still, in the world, (3,), metres."""
-    points, pose = scene.cage.points_cage, scene.cage.pose_world_cage
-    found: FloatArray = cage_middles(scene, points[None], pose.position_m[None], pose.quaternion_wxyz[None])[0]
-    return found
+    """Return the middle of all points, shapes and holes of the cage that stand still, in the world, (3,), metres. A
+    scene never changes, so that it is found once.
+    """
+    if scene not in _MIDDLES:
+        points, pose = scene.cage.points_cage, scene.cage.pose_world_cage
+        _MIDDLES[scene] = cage_middles(scene, points[None], pose.position_m[None], pose.quaternion_wxyz[None])[0]
+    return _MIDDLES[scene]
 
 
 def cage_middles(

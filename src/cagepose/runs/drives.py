@@ -91,9 +91,13 @@ def displaced_bodies(scene: Scene, shares: Sequence[float]) -> dict[str, Pose]:
 def displaced_after(run: Run, phase: int) -> FloatArray:
     """Return how the bodies of a cage are displaced at the end of a phase of a run, counted from 0, as `at_start`."""
     drives = [ended.drive for ended in run.phases[: phase + 1]]
-    moved = displaced_bodies(run.scene, [0.0 if drive is None else drive.share for drive in drives])
-    found = at_start(run.scene)
-    for row, body in enumerate(run.scene.cage.bodies, start=1):
+    return displaced_at(run.scene, [0.0 if drive is None else drive.share for drive in drives])
+
+
+def displaced_at(scene: Scene, shares: Sequence[float]) -> FloatArray:
+    """Return how the bodies of a cage are displaced after the first phases, see `displaced_bodies`, as `at_start`."""
+    moved, found = displaced_bodies(scene, shares), at_start(scene)
+    for row, body in enumerate(scene.cage.bodies, start=1):
         found[row] = *moved[body.name].position_m, *moved[body.name].quaternion_wxyz
     return found
 

@@ -27,7 +27,7 @@ def read_drives(scene: Scene, outcome: Outcome) -> list[DriveRun | None]:
     for phase, (load, record) in enumerate(zip(scene.loads, records, strict=False)):
         last, own = int(record["n_steps"]), slice(first, int(record["n_steps"]))
         is_driven = steps["rule"][own] == DRIVEN
-        if is_driven.any() or record["verdict"] in (BLOCKED, JAMS, STOPS):
+        if load.drive and (is_driven.any() or record["verdict"] in (BLOCKED, JAMS, STOPS)):
             begins = first + int(np.argmax(is_driven)) - 1 if is_driven.any() else last - 1
             rows = slice(begins, last)
             curve = _curve(steps, outcome.path, rows)

@@ -99,7 +99,8 @@ def _sizes(outcome: Outcome, scene: Scene, ends: Sequence[Pose]) -> Iterator[tup
     first = 0
     for last, load_n in zip(phases["n_contacts"].tolist(), _load_sizes(scene, outcome, ends), strict=False):
         largest = max(squares[first:last], default=0.0)
-        yield sum(works[first:last]) / (load_n * scene.size_m), largest**0.5 / load_n
+        size = load_n or 1.0  # springs that pull on nothing any more, and no forces
+        yield sum(works[first:last]) / (size * scene.size_m), largest**0.5 / size
         first = last
 
 

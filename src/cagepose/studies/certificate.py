@@ -1,4 +1,4 @@
-"""The proof of a rest as data: `Certificate`.
+"""The proof of a rest, and what is proven of the drive before it, as data: `Certificate`.
 
 `certify` makes one, and `certificate_check` says whether it is right. Nothing
 here knows how such a proof is found.
@@ -7,62 +7,14 @@ here knows how such a proof is found.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated
 
 from cagepose.model.checks import FloatArray
 from cagepose.model.wording import counted
 from cagepose.runs.proof import Uniqueness
+from cagepose.studies.drive_proof import DriveProof
+from cagepose.studies.mode_tree import ModeTree
 from cagepose.studies.touched_faces import ContactFace
-
-Decision = Literal["none", "opens", "closed", "sticks", "slips"]
-
-
-@dataclass(frozen=True, eq=False)
-class ModeTree:
-    """Cases of what the contacts do, each divided into cases that cover it, down to cases in which no motion begins.
-
-    Attributes
-    ----------
-    parents
-        Of each node the one that it divides, which comes before it; -1: the root, node 0, which decides nothing.
-    contacts
-        Of each node the contact that it decides, by its place among those that count; -1: the root.
-    decisions
-        What it decides: the contact "opens" (its force is zero) or stays "closed" (its gap does); it "sticks" (it has
-        no slip) or "slips" (in a sector of directions). "none": the root.
-    starts_rad, widths_rad
-        Of a sector: the angle from the first tangent towards the second at which it starts, and how wide it is; (n,).
-    twists
-        Of each leaf, in the order of the nodes: z of (5.20), velocity of the centre of gravity and angular velocity in
-        the world, for a load of length 1; (n_leaves, 6).
-    pressures
-        Of each leaf and contact: along normal and tangents, in loads, what D z leaves of the load, as velocities
-        that its case does not allow; (n_leaves, n_contacts, 3).
-    """
-
-    parents: tuple[int, ...]
-    contacts: tuple[int, ...]
-    decisions: tuple[Decision, ...]
-    starts_rad: Annotated[FloatArray, (-1,)]
-    widths_rad: Annotated[FloatArray, (-1,)]
-    twists: Annotated[FloatArray, (-1, 6)]
-    pressures: Annotated[FloatArray, (-1, -1, 3)]
-
-    def __repr__(self) -> str:
-        return f"<ModeTree: {len(self.parents)} nodes, {len(self.leaves())} leaves>"
-
-    def leaves(self) -> list[int]:
-        """Return the nodes that are not divided."""
-        divided = set(self.parents)
-        return [node for node in range(len(self.parents)) if node not in divided]
-
-    def above(self, node: int) -> list[int]:
-        """Return a node and those above it, the root left out."""
-        found = list[int]()
-        while node > 0:
-            found.append(node)
-            node = self.parents[node]
-        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +60,7 @@ class OtherOnset:
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """The proof of a rest as data, which `check_certificate` verifies.
+    """The proof of a rest, and of a drive that led there, as data, which `check_certificate` verifies.
 
     A load of length 1 in the scaled coordinates of (5.3) is the unit of all forces.
 
@@ -116,7 +68,7 @@ class Certificate:
     ----------
     uniqueness
         "strong": for each choice of faces there is a tree. "weak": there is another onset. "not shown": neither; the
-        forces show that rest is one onset.
+        forces show that rest is one onset. None: nothing is said of rest, only of the drive.
     contacts
         Between what they are.
     places_world, directions_world
@@ -128,16 +80,20 @@ class Certificate:
         One for each choice of faces at edges.
     onset
         The other one, for "weak".
+    drive
+        What is proven of the drive of the phase; None: nothing was driven.
     """
 
-    uniqueness: Uniqueness
+    uniqueness: Uniqueness | None
     contacts: tuple[ContactFace, ...]
     places_world: Annotated[FloatArray, (-1, 3)]
     directions_world: Annotated[FloatArray, (-1, 3, 3)]
     friction: Annotated[FloatArray, (-1,)]
     choices: tuple[ChosenFaces, ...]
     onset: OtherOnset | None
+    drive: DriveProof | None = None
 
     def __repr__(self) -> str:
         counts = counted((len(self.contacts), "contact", "contacts"), (len(self.choices), "choice", "choices"))
-        return f"<Certificate: {self.uniqueness}, {counts} of faces>"
+        rest = "nothing of rest" if self.uniqueness is None else f"{self.uniqueness}, {counts} of faces"
+        return f"<Certificate: {rest}{f', {self.drive!r}' if self.drive else ''}>"

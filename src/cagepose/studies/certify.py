@@ -11,15 +11,13 @@ from itertools import islice, product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.least_squares import WRENCH
-from cagepose.kernels.contact import coulomb_newton, equilibrium
+from cagepose.kernels.contact import equilibrium
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.kernels.contact.friction import friction_of
-from cagepose.kernels.stability import relaxation, strong
+from cagepose.kernels.stability import strong
 from cagepose.kernels.stability.proof_search import balance_with_faces, search_with_faces
-from cagepose.kernels.stability.relaxation import ANY_WAY, AWAY, BEFORE, BEHIND, INTO, N_VELOCITIES, QUARTER_TURNS
 from cagepose.model.checks import FloatArray, expect
 from cagepose.runs.cases import cases_of
 from cagepose.runs.drives import displaced_after
@@ -27,25 +25,22 @@ from cagepose.runs.judge import judged_workspace
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.proof import Uniqueness
 from cagepose.runs.run import Run
-from cagepose.studies.certificate import Certificate, ChosenFaces, Decision, ModeTree, OtherOnset
+from cagepose.studies.certificate import Certificate, ChosenFaces, OtherOnset
+from cagepose.studies.certify_drive import drive_proof
 from cagepose.studies.contact_problem import ContactProblem, contact_problem
+from cagepose.studies.kernel_rows import rows_in_order
+from cagepose.studies.mode_tree import ModeTree
+from cagepose.studies.read_tree import read_tree
 from cagepose.studies.tolerances import SAME_LOAD
-
-DECISIONS: dict[int, Decision] = {
-    relaxation.UNDECIDED: "none",
-    coulomb_newton.OPENS: "opens",
-    relaxation.CLOSED: "closed",
-    coulomb_newton.STICKS: "sticks",
-    coulomb_newton.SLIPS: "slips",
-}
 
 
 def certificate(run: Run, phase: int = -1) -> Certificate | None:
-    """Return the proof that the end of a phase is at rest, and that rest is the only onset or one of several.
+    """Return the proof that the end of a phase is at rest, and that rest is the only onset or one of several; and, of a
+    phase that drives bodies of the cage, where along the drive the object could jam, and why it stopped.
 
-    The search is made again. Returns None where the object moves; where nothing touches it; where contacts without play
-    carry the load to second order, which these proofs of first order do not show; and where edges have more than 729
-    choices of faces.
+    The search is made again. There is no proof of rest where the object moves; where nothing touches it; where contacts
+    without play carry the load to second order, which these proofs of first order do not show; and where edges have
+    more than 729 choices of faces. Returns None where nothing is proven.
 
     Parameters
     ----------
@@ -61,8 +56,16 @@ def certificate(run: Run, phase: int = -1) -> Certificate | None:
     """
     expect(run, Run, "run")
     number = range(len(run.phases))[phase]
-    ended = run.phases[number]
-    if ended.proof.verdict == "moves":
+    rest, drive = _of_rest(run, number), drive_proof(run, number)
+    if rest is None and drive is not None:
+        nothing = np.zeros(0)
+        return Certificate(None, (), nothing.reshape(0, 3), nothing.reshape(0, 3, 3), nothing, (), None, drive)
+    return rest if rest is None or drive is None else replace(rest, drive=drive)
+
+
+def _of_rest(run: Run, number: int) -> Certificate | None:
+    """Return the proof of rest at the end of a phase, counted from 0; None: there is none."""
+    if run.phases[number].proof.verdict == "moves":
         return None
     problem = contact_problem(run, number)
     choices = list(islice(product(*reversed(problem.groups)), CHOICES_LIMIT + 1))
@@ -107,7 +110,7 @@ class _Search:
         self.states, self.tree = contacts.states, work.tree
         contacts.used[0] = work.n_asked
         in_kernels = contacts.rows["columns"][..., :WRENCH]
-        self.used = _in_order(in_kernels[: work.n_asked], self.lengths[..., None] * self.columns)
+        self.used = rows_in_order(in_kernels[: work.n_asked], self.lengths[..., None] * self.columns)
         load = work.solver.load[:WRENCH]
         self.size = float(np.linalg.norm(load)) or 1.0
         self.is_of_first_order = self._take(in_kernels, load, run.phases[phase].proof.uniqueness == "strong")
@@ -138,7 +141,7 @@ class _Search:
         for flag in ("chosen", "counts"):
             states[flag] = False
             states[flag][self.used[places]] = True
-        code = balance_with_faces(self.friction, self.at)
+        code = self._balance()
         forces = self._forces(places)
         if code == equilibrium.MOVES:
             return None
@@ -148,65 +151,34 @@ class _Search:
             return "strong", ChosenFaces(chosen, forces, _root_alone(forces)), None
         answer = search_with_faces(self.friction, self.at)
         if answer == strong.UNIQUE:
-            return "strong", ChosenFaces(chosen, forces, self._tree(places)), None
+            return (
+                "strong",
+                ChosenFaces(
+                    chosen, forces, read_tree(self.tree, self.columns[places], self.lengths[places], self.problem.scale)
+                ),
+                None,
+            )
         onset = OtherOnset(chosen, self._forces(places)) if answer == strong.OTHER_FOUND else None
         return ("weak" if onset else "not shown"), ChosenFaces(chosen, forces, None), onset
 
+    def _balance(self) -> int:
+        """Balance the load to a small part of itself, if that can be; else, as a run does, to one of its terms.
+
+        Springs that pull against each other leave a load that is a small part of them, and forces that spare friction
+        would leave more of it than a certificate may.
+        """
+        solver: Any = self.at.scratch[0].solver
+        terms = float(solver.load_terms)
+        solver.load_terms = self.size
+        code = balance_with_faces(self.friction, self.at)
+        solver.load_terms = terms
+        return balance_with_faces(self.friction, self.at) if code == equilibrium.MOVES else code
+
     def _forces(self, places: list[int]) -> FloatArray:
         return np.asarray(self.lengths[places] * self.states["forces"][self.used[places]] / self.size)
-
-    def _tree(self, places: list[int]) -> ModeTree:
-        tree, n = self.tree, int(self.tree.n_nodes)
-        found = ModeTree(
-            tuple(tree.parents[:n].tolist()),
-            tuple(tree.places[:n].tolist()),
-            tuple(DECISIONS[mode] for mode in tree.modes[:n].tolist()),
-            tree.starts[:n].copy(),
-            tree.widths[:n].copy(),
-            np.zeros((0, WRENCH)),
-            np.zeros((0, len(places), 3)),
-        )
-        leaves = found.leaves()
-        sizes = np.linalg.norm(self.columns[places, 0], axis=1)
-        pressures = np.zeros((len(leaves), len(places), 3))
-        for number, leaf in enumerate(leaves):
-            for way, share in zip(tree.ways[leaf, :WRENCH].tolist(), tree.shares[leaf, :WRENCH].tolist(), strict=True):
-                if way >= 0:
-                    contact, which = divmod(way, N_VELOCITIES)
-                    size = share / sizes[contact] * self.lengths[places[contact]]
-                    pressures[number, contact] += size * _not_allowed(found, leaf, contact, which)
-        return replace(found, twists=tree.twists[leaves, :WRENCH] @ self.problem.scale, pressures=pressures)
-
-
-def _in_order(in_kernels: FloatArray, columns: FloatArray) -> NDArray[np.int64]:
-    """Return which row of the kernels each contact of a problem is, by their wrenches, (n,); of another number of them,
-    none.
-    """
-    if len(in_kernels) != len(columns):
-        return np.zeros(0, np.int64)
-    apart = np.linalg.norm(in_kernels[:, 0] - columns[:, None, 0], axis=2)
-    found = np.zeros(len(columns), np.int64)
-    for number, ways in enumerate(apart):
-        found[number] = ways.argmin()
-        apart[:, found[number]] = np.inf
-    return found
 
 
 def _root_alone(forces: FloatArray) -> ModeTree:
     """A balance without friction: the load drives no motion that the contacts allow, and the proof is z = 0."""
     nothing = np.zeros(1)
     return ModeTree((-1,), (-1,), ("none",), nothing, nothing, np.zeros((1, WRENCH)), forces[None])
-
-
-def _not_allowed(tree: ModeTree, leaf: int, contact: int, which: int) -> FloatArray:
-    """Return a velocity at a contact that a leaf does not allow, normal and tangents, by its number."""
-    if which in (INTO, AWAY):
-        return np.array((1.0 if which == INTO else -1.0, 0.0, 0.0))
-    if which in (BEFORE, BEHIND):
-        slips = (
-            node for node in tree.above(leaf) if tree.contacts[node] == contact and tree.decisions[node] == "slips"
-        )
-        slip = next(slips)
-        first, last = tree.starts_rad[slip], tree.starts_rad[slip] + tree.widths_rad[slip]
-        return np.array((0.0, *((np.sin(first), -np.cos(first)) if which == BEFORE else (-np.sin(last), np.cos(last)))))
-    return np.array((0.0, *QUARTER_TURNS[which - ANY_WAY : which - ANY_WAY + 2]))

@@ -6,6 +6,7 @@ is shared with the kernels. Where other shapes touch is what the kernels find.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,7 @@ from cagepose.runs.drives import displaced_after
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
 from cagepose.runs.tolerances import LEAST_RADIUS_OF_GYRATION
-from cagepose.studies.touched_faces import ContactFace, touched_faces
+from cagepose.studies.touched_faces import ContactFace, Touch, touched_faces
 from cagepose.studies.touched_shapes import touched_shapes
 
 
@@ -75,6 +76,15 @@ def contact_problem(run: Run, phase: int) -> ContactProblem:
         touched = touched_shapes(scene, pose, phase, of_scene, displaced)
     else:
         touched = touched_faces(scene, pose, displaced)
+    return problem_of(scene, pose, phase, touched, of_scene, displaced)
+
+
+def problem_of(
+    scene: Scene, pose: Pose, phase: int, touched: Sequence[Touch], of_scene: float, displaced: FloatArray
+) -> ContactProblem:
+    """Return the contact problem of what touches at a pose, under the load of a phase, with ``of_scene`` as the scene's
+    friction and the bodies of the cage displaced as for `cases_of`.
+    """
     groups: dict[object, list[int]] = {}
     for number, touch in enumerate(touched):
         groups.setdefault(touch.group, []).append(number)

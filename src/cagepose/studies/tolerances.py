@@ -66,3 +66,13 @@ VIOLATION_OF_CONE = 1e-9
 DISTANCE_OF_CORNER = 1e-3
 """Fraction of a corner's distance from the centre of gravity, or from the farthest contact. A corner is no farther
 outside."""
+MARGINS_OF_JAMS = (0.1, 1e-2, 1e-3, 1e-4, 1e-6, 0.0)
+"""In drifts. A motion that gives way is looked for with these margins, one after the other."""
+SPEED_OF_GIVING_WAY = 1e-9
+"""In drifts. A contact that opens more slowly than it must by less gives way by rounding, however fast the motion."""
+FORCES_THAT_CANCEL = 1e-8
+"""In what forces add up to. They cancel if they leave at most this."""
+SAME_DRIFT = 1e-9
+"""In the fastest drift, and in the growth of the load. Drifts and growth are those of the scene but for rounding."""
+SAME_FREEDOM = 1e-7
+"""In lengths of the wrenches. A self-stress leaves motions free that close or open its contacts by less."""

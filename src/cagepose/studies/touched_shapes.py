@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from cagepose.kernels.contact.contact_set import tangents_to
+from cagepose.kernels.stability.proof import ProofWorkspace
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -20,8 +21,13 @@ def touched_shapes(scene: Scene, pose: Pose, phase: int, friction: float, displa
     between those that a run lists which the search for another onset has asked.
     """
     at, _ = judged_workspace(scene, pose, phase, friction, displaced)
+    return touches_of(scene, pose, at, at.scratch[0].n_asked)
+
+
+def touches_of(scene: Scene, pose: Pose, at: ProofWorkspace, n: int) -> list[Touch]:
+    """Return the first n contacts that a kernel has found at a pose."""
     contacts: Any = at.contacts
-    rows = contacts.rows[: at.scratch[0].n_asked]
+    rows = contacts.rows[:n]
     center, counts, found = pose.transform(scene.object.center_of_gravity_m), Counter[tuple[str, str]](), list[Touch]()
     for row in rows:
         pair = scene.cage.element_names[row["cage_part"]], scene.object.element_names[row["part"]]

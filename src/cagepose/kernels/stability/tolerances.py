@@ -49,4 +49,4 @@ VIOLATION_TRIED = 0.2
 SLIP_AT_REST = 1e-6
 """In lengths of the motion. A contact that moves more slowly stands still."""
 SPEED_OF_PROOF = 1e-9
-"""In lengths of the motion. A force that does less work than the drive by so little does as much."""
+"""In the fastest drift. A force that does less work than the drive by so little does as much."""
