@@ -79,9 +79,13 @@ if TYPE_CHECKING:
     from cagepose.studies.comparison import Parting as Parting
     from cagepose.studies.comparison import Variant as Variant
     from cagepose.studies.comparison import compare as compare
+    from cagepose.studies.insertion import insertion as insertion
+    from cagepose.studies.insertion_result import Insertion as Insertion
     from cagepose.studies.margin import ContactMargin as ContactMargin
     from cagepose.studies.margin import Margin as Margin
     from cagepose.studies.margin import margin as margin
+    from cagepose.studies.misalignment import Misalignment as Misalignment
+    from cagepose.studies.misalignment import MisalignmentEnd as MisalignmentEnd
     from cagepose.studies.play import play as play
     from cagepose.studies.play_result import Play as Play
     from cagepose.studies.touched_faces import ContactFace as ContactFace
@@ -127,7 +131,10 @@ _HOMES = {
     "cagepose.studies.certificate_check": ("CertificateCheck", "check_certificate"),
     "cagepose.studies.certify": ("certificate",),
     "cagepose.studies.comparison": ("Comparison", "Parting", "Variant", "compare"),
+    "cagepose.studies.insertion": ("insertion",),
+    "cagepose.studies.insertion_result": ("Insertion",),
     "cagepose.studies.margin": ("ContactMargin", "Margin", "margin"),
+    "cagepose.studies.misalignment": ("Misalignment", "MisalignmentEnd"),
     "cagepose.studies.play": ("play",),
     "cagepose.studies.play_result": ("Play",),
     "cagepose.studies.touched_faces": ("ContactFace",),
@@ -166,9 +173,12 @@ __all__ = [
     "Frame",
     "FreeMotion",
     "Hole",
+    "Insertion",
     "KernelsError",
     "Load",
     "Margin",
+    "Misalignment",
+    "MisalignmentEnd",
     "MissingExtraError",
     "ModeTree",
     "Moment",
@@ -200,6 +210,7 @@ __all__ = [
     "certificate",
     "check_certificate",
     "compare",
+    "insertion",
     "load_certificates",
     "load_run",
     "load_scene",

@@ -66,3 +66,13 @@ VIOLATION_OF_CONE = 1e-9
 DISTANCE_OF_CORNER = 1e-3
 """Fraction of a corner's distance from the centre of gravity, or from the farthest contact. A corner is no farther
 outside."""
+SHARE_APART = 1e-6
+"""In shares of a drive. Between two places that are so far apart it is told how a load grows."""
+MOST_JAM_FRICTION = 10.0
+"""Up to this coefficient of friction it is asked whether an object could jam, as along a run."""
+JAM_FRICTION_WITHIN = 1e-5
+"""Fraction of a coefficient. The least one that lets an object jam at a place is known so well."""
+LEAST_JAM_FRICTION = 1e-6
+"""A coefficient of friction. Less of it is none: surfaces that are parallel but for rounding let an object jam so."""
+SPEED_OF_JAM = 1e-8
+"""In lengths of the motion. A contact that a motion closes by less gives way to the drive."""
