@@ -21,7 +21,7 @@ LENGTH_LIMIT_OF_SIZE, ANGLE_LIMIT = 0.1, math.radians(10.0)
 """How far is searched: in sizes of the scene, and radians."""
 PLACES = 8
 """On each side at first: at the limit, at half of it, and so on."""
-WITHIN_OF_LIMIT = 1e-5
+WITHIN_OF_LIMIT = 1e-6
 """So near to nothing, as a fraction of the limit, an end is as good as there."""
 AS_FAR = 0.9
 """Of the way that the object and what it meets come together where nothing is out of place: less is too short."""
