@@ -18,7 +18,7 @@ from cagepose.views.drive_curves import DriveCurves, drive_curves
 from cagepose.views.drive_figure import draw_force, set_force_limits
 from cagepose.views.style import BLUE, GREY, ORANGE, PAGE_WIDTH_IN, PALE, SKY, VERMILLION, Look, styled
 
-COULD_JAM: Look = {"facecolor": ORANGE, "alpha": 0.35, "hatch": "////", "edgecolor": VERMILLION, "linewidth": 0.0}
+COULD_JAM: Look = {"facecolor": ORANGE, "alpha": 0.35, "hatch": "////", "edgecolor": VERMILLION, "linewidth": 0.6}
 PERMITTED: Look = {"color": SKY, "edgecolor": BLUE, "height": 0.55}
 MOST_SHOWN = 10.0
 """Up to this coefficient of friction it is asked."""
@@ -112,7 +112,7 @@ def _draw_end(panel: Axes, end: MisalignmentEnd, row: int, tip: float, sign: flo
         panel.plot([tip], [row], marker=marker, color=BLUE, markersize=7.0, clip_on=False, zorder=5)
         return
     panel.annotate(
-        end.verdict or "",
+        f"{end.verdict} (a run that failed)" if end.is_failure else str(end.verdict),
         (tip, row),
         (5.0 * sign, 0),
         textcoords="offset points",
