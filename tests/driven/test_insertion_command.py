@@ -104,6 +104,11 @@ def test_a_drive_that_does_not_begin_says_why(capsys: pytest.CaptureFixture[str]
     assert (document["drive"], document["least_jam_share"], document["jam_friction"]["least"]) == (None, None, [])
 
 
+def test_a_run_that_failed_by_name_ends_with_one(plate: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cagepose.Run, "failed", property(lambda _: True))
+    assert main(["insertion", plate, "--along", "y", "--json"]) == 1
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
