@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import cagepose
-from cagepose import Cage, CageBody, Load, Misalignment, Object, Pose, Scene, insertion, run
+from cagepose import Cage, CageBody, Drive, Load, Misalignment, Object, Pose, Scene, insertion, run
+from cagepose.runs.drives import displaced_by
 from cagepose.runs.misaligned import Misaligned, Reached
 from cagepose.studies import misalignment as module
 from cagepose.studies.misalignment import permitted_misalignment
@@ -56,9 +57,21 @@ def test_two_pins_may_be_turned_until_one_is_off_by_its_play_and_the_chamfer(apa
     check_ends(asked(pins_into_a_plate((-apart / 2, apart / 2)), "yaw")["yaw"], -yaw, yaw)
 
 
-def test_turns_go_through_the_origin_of_the_object_wherever_the_scene_stands() -> None:
-    """One pin on the object's origin may be turned as far as is searched, in any world."""
-    scene, moved = pins_into_a_plate(), Pose((0.3, -0.2, 0.1), euler_zyx=(0.5, 0.0, 0.0))
+@pytest.mark.parametrize("at_mm", [(0.0, 0.0), (60.0, -35.0)])
+def test_turns_go_through_the_origin_of_the_object_wherever_it_stands(at_mm: tuple[float, float]) -> None:
+    """There one pin may be turned as far as is searched; of two the second one goes along a chord about the first."""
+    found = asked(pins_into_a_plate(at_mm=at_mm), "yaw")["yaw"]
+    for end in (found.low, found.high):
+        assert (end.fails_at, end.verdict) == (None, None)
+        assert end.permitted is not None
+        assert abs(end.permitted) == math.radians(10.0)
+    yaw = 2.0 * math.asin((PLAY + CHAMFER) / 2.0 / 50.0)
+    check_ends(asked(pins_into_a_plate((0.0, 50.0), at_mm=at_mm), "yaw")["yaw"], -yaw, yaw)
+
+
+def test_shifts_are_along_the_axes_of_the_cage_as_it_lies_in_the_world() -> None:
+    """A wall stands beside the plate on the side of the cage's +y."""
+    scene, moved = pins_into_a_plate(wall_mm=0.2), Pose((0.3, -0.2, 0.1), euler_zyx=(0.5, 0.0, 0.0))
     held, cage = scene.object, scene.cage
     elsewhere = Scene(
         Object(held.boxes, holes=held.holes, mass_kg=held.mass_kg, pose=moved @ held.pose_world_object),
@@ -66,12 +79,24 @@ def test_turns_go_through_the_origin_of_the_object_wherever_the_scene_stands() -
         scene.loads,
         friction_coefficient=0.0,
     )
-    found = asked(elsewhere, "yaw", "x")
-    for end in (found["yaw"].low, found["yaw"].high):
-        assert (end.fails_at, end.verdict) == (None, None)
-        assert end.permitted is not None
-        assert abs(end.permitted) == math.radians(10.0)
-    check_ends(found["x"], -(PLAY + CHAMFER) * MM, (PLAY + CHAMFER) * MM)
+    check_ends(asked(elsewhere, "y")["y"], -(PLAY + CHAMFER) * MM, (PLAY + 0.2) * MM)
+
+
+@pytest.mark.parametrize(
+    "leg",
+    [
+        Drive((0.01, 0.02, -0.03)),
+        Drive(about=(0, 1, 0), through=(0.1, 0, 0.2), angle=0.4),
+        Drive((0, 0, 0.02), (0, 0, 1), (0.05, 0.1, 0), -0.3),
+    ],
+    ids=["travel", "turn", "screw"],
+)
+def test_a_way_that_is_moved_is_seen_from_there_as_before(leg: Drive) -> None:
+    moved = Pose((0.03, -0.02, 0.01), euler_zyx=(0.3, -0.2, 0.1))
+    for share in (0.3, 1.0):
+        found, seen = displaced_by([leg.moved(moved)], share), moved @ displaced_by([leg], share) @ moved.inverse()
+        np.testing.assert_allclose(found.position_m, seen.position_m, atol=1e-15)
+        np.testing.assert_allclose(found.quaternion_wxyz, seen.quaternion_wxyz, atol=1e-15)
 
 
 def test_a_limit_of_force_permits_the_play_alone_where_sliding_takes_more() -> None:

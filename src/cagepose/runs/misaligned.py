@@ -107,7 +107,7 @@ class Misaligned:
         last = int(np.flatnonzero(codes != NOT_RUN)[-1])
         if codes[last] == INVALID:
             return Reached(OVERLAPS, False, math.nan)
-        is_end = last == phase and bool(codes[last] == RESTS and endings.shares[0, phase] >= 1.0)
+        is_end = last == phase and bool(codes[last] == RESTS)  # where a drive ends at rest it is at its end
         return Reached(VERDICT_NAMES[codes[last]], is_end, self._advance(moved, cases, endings) if is_end else math.nan)
 
     def _advance(self, moved: Pose, cases: Cases, endings: Endings) -> float:
