@@ -10,11 +10,12 @@ import pytest
 from scipy.optimize import brentq
 
 import cagepose
-from cagepose import Scene, insertion, run
+from cagepose import Cage, CageBody, Pose, Scene, insertion, run
 from cagepose.studies.drifting_contacts import DriftingContacts
 from cagepose.studies.jam_friction import jam_friction_along, least_jam_friction
 from driven.driven_scenes import RAMP, lever, truss, wedge
 from driven.insertions import Insertion
+from driven.pins_into_plates import pins_into_a_plate
 from our_scenes import SCENES
 
 OURS = {path.stem: path for path in SCENES}
@@ -28,6 +29,17 @@ def least(scene: Scene) -> np.ndarray:
 
 def test_a_drawer_jams_from_its_length_over_twice_the_offset_on() -> None:
     assert least(cagepose.load_scene(OURS["drawer-jams"])).min() == pytest.approx(1.5, rel=2e-5)
+
+
+@pytest.mark.parametrize(("table", "exact"), [(1.0, math.tan(math.pi / 8)), (0.0, 1.0)])
+def test_a_plate_between_a_chamfer_and_its_table_jams_by_the_angles_of_both(table: float, exact: float) -> None:
+    """A pin on a slope of 45 deg: the angles of friction of slope and table make up that to 90 deg."""
+    plain = pins_into_a_plate()
+    (head,) = plain.cage.bodies
+    off = CageBody("head", shapes=head.shapes, pose=Pose((0.0, 0.5e-3, 0.021)))
+    cage = Cage(shapes=plain.cage.standing.shapes, bodies=[off])
+    scene = Scene(plain.object, cage, plain.loads, friction_coefficient=0.1, friction_of={"table": 0.1 * table})
+    assert least(scene).min() == pytest.approx(exact, rel=2e-5)
 
 
 @pytest.mark.parametrize("part", [0.25, 0.5, 1.0])

@@ -99,6 +99,16 @@ def test_a_way_that_is_moved_is_seen_from_there_as_before(leg: Drive) -> None:
         np.testing.assert_allclose(found.quaternion_wxyz, seen.quaternion_wxyz, atol=1e-15)
 
 
+@pytest.mark.parametrize(("friction", "permitted", "verdict"), [(0.3, PLAY + CHAMFER, "blocked"), (0.43, PLAY, "jams")])
+def test_a_rough_pin_on_a_chamfer_of_45_deg_jams_from_tan_22_5_deg_on(
+    friction: float, permitted: float, verdict: str
+) -> None:
+    """Pin and table press on the plate along one line where the chamfer's slope is twice the angle of friction."""
+    scene = pins_into_a_plate()
+    rough = Scene(scene.object, scene.cage, scene.loads, friction_coefficient=friction)
+    check_ends(asked(rough, "y")["y"], -permitted * MM, permitted * MM, verdict)
+
+
 def test_a_limit_of_force_permits_the_play_alone_where_sliding_takes_more() -> None:
     scene = pins_into_a_plate()
     (load,) = scene.loads
