@@ -82,8 +82,8 @@ def permitted_misalignment(
     object rests there, and both have come together nine tenths as far as where nothing is out of place.
 
     A side is searched outwards at 8 places, each twice as far as the one before. The first one that is not good ends
-    it: between it and the last good one the end is found by halving. Should it be good again
-    farther out, or bad between two places that are good, that is not seen.
+    it: between it and the last good one the end is found by halving. Should it be good again farther out, or bad
+    between two places that are good, that is not seen.
 
     Parameters
     ----------
