@@ -15,11 +15,12 @@ from sphinx.application import Sphinx
 from sphinx.config import Config
 from sphinx.writers.html5 import HTML5Translator
 
-from cagepose import Design, Study, load_scene, play, run
+from cagepose import Design, Study, insertion, load_scene, play, run
 from cagepose.files.scene_file import read_scene_file
 from cagepose.model.wording import percent
 from cagepose.paper.report import write_report
 from cagepose.paper.reproduction import METHODS, reproduce
+from cagepose.views.insertion_figure import insertion_figure
 from cagepose.views.play_figure import play_figure
 from cagepose.views.style import figure_bytes
 from cagepose.views.viewer.film import png_bytes
@@ -98,6 +99,14 @@ def _draw_play(app: Sphinx) -> None:
         (folder / f"play-{name}.svg").write_bytes(figure_bytes(play_figure(found, [point_m]), ".svg"))
 
 
+def _draw_insertion(app: Sphinx) -> None:
+    """Ask the scene about its insertion that the page about it shows, and draw the answer."""
+    folder = Path(app.srcdir) / "generated"
+    folder.mkdir(exist_ok=True)
+    found = insertion(load_scene(Path(app.srcdir).parent / "scenes" / "dock.yaml"), along=["z", "pitch"])
+    (folder / "insertion-dock.svg").write_bytes(figure_bytes(insertion_figure(found), ".svg"))
+
+
 def _comment(scene_file: Path) -> str:
     """Return the first paragraph of the comment that a scene file begins with."""
     lines = scene_file.read_text(encoding="utf-8").splitlines()
@@ -157,6 +166,7 @@ def setup(app: Sphinx) -> None:
     app.connect("config-inited", _studies, priority=101)
     app.connect("builder-inited", _reproduce)
     app.connect("builder-inited", _draw_play)
+    app.connect("builder-inited", _draw_insertion)
     app.connect("autodoc-process-signature", _plain_aliases)
     app.add_html_math_renderer("mathml", (_inline_math, None), (_display_math, None))
 

@@ -9,9 +9,13 @@ from pathlib import Path
 
 import pytest
 
+from cagepose.cli.app import main
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = (ROOT / "docs" / "insertion.md").read_text(encoding="utf-8")
-(CODE,), (PRINTED,) = (re.findall(rf"```{kind}\n(.*?)```", PAGE, re.DOTALL) for kind in ("python", "text"))
+(CODE, *_), (PRINTED, LISTING, *_) = (
+    re.findall(rf"```{kind}\n(.*?)```", PAGE, re.DOTALL) for kind in ("python", "text")
+)
 
 
 def test_the_code_prints_what_stands_below_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -20,3 +24,13 @@ def test_the_code_prints_what_stands_below_it(monkeypatch: pytest.MonkeyPatch) -
     with contextlib.redirect_stdout(printed):
         exec(CODE, {})
     assert printed.getvalue() == PRINTED
+
+
+def test_the_listing_is_what_the_command_prints(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.chdir(ROOT)
+    command, _, listing = LISTING.partition("\n")
+    arguments = command.removeprefix("$ cagepose ").replace("dock.png", str(tmp_path / "dock.png")).split()
+    assert main(arguments) == 0
+    assert capsys.readouterr().out == listing

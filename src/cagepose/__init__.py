@@ -83,9 +83,13 @@ if TYPE_CHECKING:
     from cagepose.studies.drive_proof import DriveProof as DriveProof
     from cagepose.studies.drive_proof import JamChoice as JamChoice
     from cagepose.studies.drive_proof import StopChoice as StopChoice
+    from cagepose.studies.insertion import insertion as insertion
+    from cagepose.studies.insertion_result import Insertion as Insertion
     from cagepose.studies.margin import ContactMargin as ContactMargin
     from cagepose.studies.margin import Margin as Margin
     from cagepose.studies.margin import margin as margin
+    from cagepose.studies.misalignment import Misalignment as Misalignment
+    from cagepose.studies.misalignment import MisalignmentEnd as MisalignmentEnd
     from cagepose.studies.mode_tree import ModeTree as ModeTree
     from cagepose.studies.play import play as play
     from cagepose.studies.play_result import Play as Play
@@ -134,7 +138,10 @@ _HOMES = {
     "cagepose.studies.comparison": ("Comparison", "Parting", "Variant", "compare"),
     "cagepose.studies.drive_check": ("DriveCheck",),
     "cagepose.studies.drive_proof": ("DrivenPlace", "DriveProof", "JamChoice", "StopChoice"),
+    "cagepose.studies.insertion": ("insertion",),
+    "cagepose.studies.insertion_result": ("Insertion",),
     "cagepose.studies.margin": ("ContactMargin", "Margin", "margin"),
+    "cagepose.studies.misalignment": ("Misalignment", "MisalignmentEnd"),
     "cagepose.studies.mode_tree": ("ModeTree",),
     "cagepose.studies.play": ("play",),
     "cagepose.studies.play_result": ("Play",),
@@ -177,10 +184,13 @@ __all__ = [
     "Frame",
     "FreeMotion",
     "Hole",
+    "Insertion",
     "JamChoice",
     "KernelsError",
     "Load",
     "Margin",
+    "Misalignment",
+    "MisalignmentEnd",
     "MissingExtraError",
     "ModeTree",
     "Moment",
@@ -213,6 +223,7 @@ __all__ = [
     "certificate",
     "check_certificate",
     "compare",
+    "insertion",
     "load_certificates",
     "load_run",
     "load_scene",

@@ -59,8 +59,8 @@ def test_the_version_is_that_of_the_package(command: Command) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["rnu"], 'Unknown command "rnu". Did you mean "run"? Available commands: run, compare, play, check, plot,'
-                  " view, study, design, ... See: cagepose --help"),
+        (["rnu"], 'Unknown command "rnu". Did you mean "run"? Available commands: run, compare, play, insertion,'
+                  " check, plot, view, study, ... See: cagepose --help"),
         (["run"], 'Command "run" parameter SCENE requires an argument. See: cagepose run --help'),
         (["run", "a.yaml", "--jsn"], "Unknown option: --jsn. Did you mean --json? See: cagepose run --help"),
         (["run", "a.yaml", "--set"], 'Command "run" parameter --set requires an argument. See: cagepose run --help'),

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from cagepose import Cage, CageBody, Drive, Load, Object, Pose, Scene, load_scene, run
+from cagepose.files.scene_file import read_scene_file
 from our_scenes import SCENES
 
 (DOCK,) = (path for path in SCENES if path.stem == "dock")
@@ -38,3 +39,18 @@ def test_within_its_play_the_rail_comes_into_line(yaw_deg: float, pitch_deg: flo
     assert max(abs(yaw), abs(roll)) < math.degrees(0.34 / 500.0)
     assert abs(pitch) < math.degrees(0.34 / 500.0) + math.degrees(0.5 / 500.0)
     assert phase.drive.snaps_j < 1e-4
+
+
+@pytest.mark.parametrize(("yaw", "pitch"), [(0.0, 0.1), (0.3, -0.4), (-0.5, 0.5)])
+def test_the_docking_with_parameters_stands_and_goes_straight_in_the_world(yaw: float, pitch: float) -> None:
+    """Its half angles are series; where they end, the mate is out of line by less than 1e-14."""
+    settings = (f"parameters.yaw={yaw}", f"parameters.pitch={pitch}")
+    turned = read_scene_file(DOCK.parent / "studies" / "dock.yaml", settings).scene
+    exact = docking(yaw, pitch)
+    (mate,), (expected,) = turned.cage.bodies, exact.cage.bodies
+    np.testing.assert_allclose(mate.pose_cage_body.position_m, expected.pose_cage_body.position_m, atol=1e-14)
+    np.testing.assert_allclose(mate.pose_cage_body.quaternion_wxyz, expected.pose_cage_body.quaternion_wxyz, atol=1e-14)
+    np.testing.assert_allclose(turned.object.pose_world_object.rotation, exact.object.pose_world_object.rotation)
+    ((leg,),) = turned.loads[1].drive.values()
+    ((way,),) = exact.loads[1].drive.values()
+    np.testing.assert_allclose(leg.travel_m, way.travel_m, atol=1e-14)

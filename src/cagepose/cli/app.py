@@ -44,6 +44,10 @@ COMMANDS = {
         "cagepose.cli.play_command:play_command",
         "How far the object can move in its cage, and whether it can get out.",
     ),
+    "insertion": (
+        "cagepose.cli.insertion_command:insertion_command",
+        "How far a drive gets, with which force, where it could jam, how far it may be out of place.",
+    ),
     "check": (
         "cagepose.cli.check_command:check_command",
         "Check a scene file without running it, or the proofs of a saved run.",

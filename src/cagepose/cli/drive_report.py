@@ -28,10 +28,11 @@ anew within the touch tolerance, and that looks like work.
 def drive_lines(run: Run, words: LengthWords) -> list[tuple[str, str]]:
     """Return the lines of all phases that drive bodies of the cage."""
     driven = [place for place, load in enumerate(run.scene.loads[: len(run.phases)]) if load.drive]
-    return [line for place in driven for line in _lines(run, place, words, is_alone=len(driven) == 1)]
+    return [line for place in driven for line in lines_of_phase(run, place, words, is_alone=len(driven) == 1)]
 
 
-def _lines(run: Run, place: int, words: LengthWords, *, is_alone: bool) -> Iterator[tuple[str, str]]:
+def lines_of_phase(run: Run, place: int, words: LengthWords, *, is_alone: bool) -> Iterator[tuple[str, str]]:
+    """Yield the lines of one phase, which names itself in the first one if others drive something, too."""
     phase, load = run.phases[place], run.scene.loads[place]
     of_phase = "" if is_alone else f" of {phase.name}"
     drive, why = phase.drive, _why(phase)

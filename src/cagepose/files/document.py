@@ -52,6 +52,11 @@ def pose_document(scene: Scene, pose: Pose, length_unit: LengthUnit) -> dict[str
     return _Writer(scene, length_unit).pose(pose)
 
 
+def drive_document(scene: Scene, drive: DriveRun, load: Load, length_unit: LengthUnit) -> dict[str, Any]:
+    """Return what came of a phase's drive as the document has it."""
+    return _Writer(scene, length_unit).drive(drive, load)
+
+
 def _force_unit(run: Run) -> Literal["N", "load"] | None:
     """Return the unit of forces: newtons, or the load; None: phases differ, and each of them tells its own."""
     units = {force_unit(run.scene, load) for load in run.scene.loads[: len(run.phases)]}
@@ -85,10 +90,10 @@ class _Writer:
             "proof": self._proof(phase.proof),
         }
         if load.drive:
-            found["drive"] = None if phase.drive is None else self._drive(phase.drive, load)
+            found["drive"] = None if phase.drive is None else self.drive(phase.drive, load)
         return found
 
-    def _drive(self, drive: DriveRun, load: Load) -> dict[str, Any]:
+    def drive(self, drive: DriveRun, load: Load) -> dict[str, Any]:
         curve = drive.curve
         return {
             "share": drive.share,

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from cagepose.errors import Problem, SceneError
 from cagepose.model.checks import FloatArray, ProblemList, check_kinds, finite_array, is_finite, unit_vector
+from cagepose.model.pose import Pose
 from cagepose.model.tolerances import PARALLEL_SINE
 from cagepose.model.wording import coordinates
 
@@ -84,6 +85,14 @@ class Drive:
             angle = f"{np.degrees(self.angle_rad):.6g} deg about {coordinates(self.about_cage, 4)}"
             turn = f"turn {angle} through {coordinates(self.through_cage_m)} m"
         return f"<Drive: {', '.join(part for part in (travel, turn) if part)}>"
+
+    def moved(self, pose: Pose) -> Drive:
+        """Return the same leg of a body whose whole way was moved by a pose, in the cage's frame."""
+        through = None if self.through_cage_m is None else pose.transform(self.through_cage_m)
+        travel, about = (
+            None if vector is None else pose.rotation @ vector for vector in (self.travel_m, self.about_cage)
+        )
+        return Drive(travel, about, through, self.angle_rad)
 
     @property
     def is_turn(self) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,16 +13,25 @@ from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.contact.loads import SPRING, PhaseLoad
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases
-from cagepose.kernels.outcome.endings import empty_endings
+from cagepose.kernels.outcome.endings import INVALID, NOT_RUN, empty_endings
+from cagepose.kernels.outcome.trace import BLOCKED, JAMS, STOPS
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.geometry import sizes_with_points
 from cagepose.model.pose import Pose, quaternions_of
 from cagepose.model.scene import FARTHEST_START, Scene
 from cagepose.runs.actions import actions_of, cage_middles, spring_ends, tensions_at_zero
-from cagepose.runs.cases import cases_of, part_of
+from cagepose.runs.cases import cases_of, greatest_friction, part_of
 from cagepose.runs.load_scaling import scaled_pushes
 from cagepose.runs.methods import Method
 from cagepose.runs.variation import Variation
+
+
+class DriveEnds(NamedTuple):
+    """What came of the drives of many runs, (n, n_phases) each; see `cagepose.runs.many.Runs`."""
+
+    shares: FloatArray
+    greatest: FloatArray
+    jam_possible: NDArray[np.bool_]
 
 
 class Batch:
@@ -40,7 +49,8 @@ class Batch:
         self._scene, self._method = scene, method
         self.n_runs, columns = variation.columns(scene)
         self.endings = empty_endings(self.n_runs, len(scene.loads), len(scene.cage.element_names))
-        self._part, self._cases = Slots(part_of(scene)), Slots(varied_cases(scene, method.friction(scene), columns))
+        cases = varied_cases(scene, method.friction(scene), columns)
+        self._part, self._cases, self._frictions = Slots(part_of(scene)), Slots(cases), cases.frictions
         self._endings = Slots(self.endings)
         self._is_stopped = np.zeros(1, np.int64)
         self._idle = list[Callable[[int, int], None]]()
@@ -55,6 +65,22 @@ class Batch:
         if last < self.n_runs:
             self._idle.append(run)
         return last - first
+
+    def drives(self) -> DriveEnds:
+        """Return what came of the drives of all runs, which are done."""
+        endings, codes = self.endings, self.endings.verdicts
+        drives = np.array([bool(load.drive) for load in self._scene.loads])
+        is_driven = drives & ((endings.shares > 0.0) | np.isin(codes, (BLOCKED, JAMS, STOPS)))
+        different, places = np.unique(self._frictions, return_inverse=True)
+        friction = np.array([greatest_friction(self._scene, one) for one in different.tolist()])[places]
+        # what is stopped before it has begun to move has no greatest force, and could jam if it does
+        greatest = np.where(endings.shares > 0.0, endings.greatest, 0.0)
+        could_jam = np.where(endings.shares > 0.0, endings.least_jams <= friction[:, None], codes != STOPS)
+        return DriveEnds(
+            np.where(drives & (codes != NOT_RUN) & (codes != INVALID), endings.shares, np.nan),
+            np.where(is_driven, greatest, np.nan),
+            is_driven & could_jam,
+        )
 
     def stop(self) -> None:
         """Let all pieces that run now end, with KeyboardInterrupt."""

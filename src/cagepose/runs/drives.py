@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import cast
 
 import numpy as np
@@ -19,8 +19,11 @@ from cagepose.model.scene import Scene
 from cagepose.runs.run import Run
 
 
-def drives_of(scene: Scene) -> Drives:
-    """Return the drives of all phases; the first body is what stands still."""
+def drives_of(scene: Scene, moved: Mapping[str, Pose] | None = None) -> Drives:
+    """Return the drives of all phases; the first body is what stands still. ``moved``: by name, how the whole ways of
+    bodies are moved, in the cage's frame, from where the scene has them.
+    """
+    ways = {} if moved is None else moved
     bodies, loads = scene.cage.bodies, scene.loads
     most = max((len(legs) for load in loads for legs in load.drive.values()), default=0)
     legs = np.zeros((len(loads), 1 + len(bodies), max(most, 1)), dtype_of(Leg))
@@ -29,6 +32,8 @@ def drives_of(scene: Scene) -> Drives:
     for phase, load in enumerate(loads):
         for body, of_body in enumerate(bodies, start=1):
             driven = load.drive.get(of_body.name, ())
+            if of_body.name in ways:
+                driven = tuple(leg.moved(ways[of_body.name]) for leg in driven)
             n_legs[phase, body] = len(driven)
             for place, drive in enumerate(driven):
                 leg = legs[phase, body, place : place + 1]
@@ -88,6 +93,16 @@ def displaced_bodies(scene: Scene, shares: Sequence[float]) -> dict[str, Pose]:
     return found
 
 
+def displaced_at(scene: Scene, shares: Sequence[float]) -> FloatArray:
+    """Return how the bodies of a cage are displaced after the first phases, as `displaced_bodies`, in the form of
+    `at_start`.
+    """
+    moved, found = displaced_bodies(scene, shares), at_start(scene)
+    for row, body in enumerate(scene.cage.bodies, start=1):
+        found[row] = *moved[body.name].position_m, *moved[body.name].quaternion_wxyz
+    return found
+
+
 def displaced_after(run: Run, phase: int) -> FloatArray:
     """Return how the bodies of a cage are displaced at the end of a phase of a run, counted from 0, as `at_start`."""
     drives = [ended.drive for ended in run.phases[: phase + 1]]
@@ -100,6 +115,24 @@ def displaced_at(scene: Scene, shares: Sequence[float]) -> FloatArray:
     for row, body in enumerate(scene.cage.bodies, start=1):
         found[row] = *moved[body.name].position_m, *moved[body.name].quaternion_wxyz
     return found
+
+
+def velocity_at(
+    drives: Sequence[Drive], share: float, pose_world_cage: Pose, place_world: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return how fast a body goes on after a share of its legs at a place, (3,) metres, and how fast it turns, (3,)
+    radians, for a unit share, in the world; a body without legs stands still.
+    """
+    velocity, spin = np.zeros(3), np.zeros(3)
+    if drives:
+        leg = drives[min(int((share + BEFORE_LEG_ENDS) * len(drives)), len(drives) - 1)]
+        if leg.travel_m is not None:
+            velocity = velocity + leg.travel_m
+        if leg.about_cage is not None and leg.through_cage_m is not None and leg.angle_rad is not None:
+            spin = leg.angle_rad * leg.about_cage
+            velocity = velocity + np.cross(spin, pose_world_cage.inverse_transform(place_world) - leg.through_cage_m)
+    to_world = len(drives) * pose_world_cage.rotation
+    return to_world @ velocity, to_world @ spin
 
 
 def points_displaced(scene: Scene, displaced: FloatArray) -> FloatArray:

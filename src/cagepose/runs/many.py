@@ -50,6 +50,12 @@ class Runs:
         The object's pose in the world after each phase, (n, n_phases, 3) and (n, n_phases, 4); NaN where not reached.
     touching
         Which cage points and shapes touch after each phase, (n, n_phases, n_elements).
+    drive_shares
+        How much of each phase's drive was done, (n, n_phases), 0 to 1; NaN where it drives nothing or was not reached.
+    greatest_along
+        As `DriveRun.greatest_along`, (n, n_phases); NaN where the drive did not begin, too.
+    jam_possible
+        Whether it could jam at one of the places that were asked along each drive, (n, n_phases).
     solve_s
         How long all runs took together, seconds.
     phases, elements
@@ -62,6 +68,9 @@ class Runs:
     position_m: FloatArray
     quaternion_wxyz: FloatArray
     touching: NDArray[np.bool_]
+    drive_shares: FloatArray
+    greatest_along: FloatArray
+    jam_possible: NDArray[np.bool_]
     solve_s: float
     phases: tuple[str, ...]
     elements: tuple[str, ...]
@@ -103,7 +112,8 @@ class Runs:
 
     def to_frame(self) -> Any:
         """Return a ``pandas.DataFrame`` with a row for each phase of each run that was reached: the run's row, the
-        phase's name, verdict, steps, pose in metres and radians, and whether each point and shape of the cage touches.
+        phase's name, verdict, steps, pose in metres and radians, where runs drive bodies the share, greatest force and
+        whether it could jam, and whether each point and shape of the cage touches.
 
         Raises
         ------
@@ -120,6 +130,12 @@ class Runs:
             **dict(zip(POSITION, self.position_m[rows, phases].T, strict=True)),
             **dict(zip(ANGLES, self.euler_zyx[rows, phases].T, strict=True)),
         }
+        if not np.isnan(self.drive_shares).all():
+            columns |= {
+                "share": self.drive_shares[rows, phases],
+                "greatest_along": self.greatest_along[rows, phases],
+                "jam_possible": self.jam_possible[rows, phases],
+            }
         columns |= {f"touches {name}": self.touching[rows, phases, place] for place, name in enumerate(self.elements)}
         return data_frame(columns)
 
@@ -209,6 +225,7 @@ def _columns(scenes: Sequence[Scene], methods: list[str], batches: Sequence[Batc
     codes = _stacked([found.verdicts for found in endings], NOT_RUN)
     proofs = _stacked([found.proofs for found in endings], NOT_RUN)
     verdicts = names[codes]
+    drives = [batch.drives() for batch in batches]
     verdicts[(codes == RESTS) & np.isin(proofs, (OTHER_ONSET, UNIQUENESS_NOT_SHOWN, TOO_MANY_CHOICES))] = "may rest"
     return Runs(
         np.repeat(methods, [batch.n_runs for batch in batches]),
@@ -217,6 +234,9 @@ def _columns(scenes: Sequence[Scene], methods: list[str], batches: Sequence[Batc
         _stacked([found.positions for found in endings], np.nan),
         _stacked([found.quaternions for found in endings], np.nan),
         _stacked([found.touching for found in endings], False),
+        _stacked([found.shares for found in drives], np.nan),
+        _stacked([found.greatest for found in drives], np.nan),
+        _stacked([found.jam_possible for found in drives], False),
         solve_s,
         _common([tuple(load.name for load in scene.loads) for scene in scenes]),
         _common([scene.cage.element_names for scene in scenes]),

@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import placed
 from cagepose.model.scene import Scene
+from cagepose.runs.cases import greatest_friction
 from cagepose.runs.many import Runs
-from cagepose.runs.run import AT_REST, Run
+from cagepose.runs.methods import chosen_method
+from cagepose.runs.run import AT_REST, STOPPED, Run
 
 REFUSED = "refused"
 """Verdict of a row whose scene cannot be right."""
@@ -33,6 +35,8 @@ class Outcomes:
     forces
         What each of them carries there, the sum of its normal forces, (n, n_elements); NaN where no forces balance the
         load. None: not asked for.
+    drive_shares, greatest_along, jam_possible
+        What came of the drive of each phase, (n, n_phases), as in `cagepose.runs.many.Runs`.
     errors
         Why a row was refused; None: it was not.
     solve_us
@@ -45,6 +49,9 @@ class Outcomes:
     euler_zyx: FloatArray
     touching: NDArray[np.bool_]
     forces: FloatArray | None
+    drive_shares: FloatArray
+    greatest_along: FloatArray
+    jam_possible: NDArray[np.bool_]
     errors: NDArray[np.object_]
     solve_us: FloatArray
 
@@ -64,8 +71,15 @@ class Outcomes:
     def clear(self, rows: NDArray[np.bool_]) -> None:
         """Make rows as if nothing was written to them."""
         self.phase_verdicts[rows], self.touching[rows], self.solve_us[rows] = "", False, 0.0
-        for poses in (self.position_m, self.quaternion_wxyz, self.euler_zyx):
-            poses[rows] = np.nan
+        self.jam_possible[rows] = False
+        for numbers in (
+            self.position_m,
+            self.quaternion_wxyz,
+            self.euler_zyx,
+            self.drive_shares,
+            self.greatest_along,
+        ):
+            numbers[rows] = np.nan
 
     def write_run(self, row: int, run: Run) -> None:
         """Write what `cagepose.run` says into a row."""
@@ -76,11 +90,24 @@ class Outcomes:
         places = {name: place for place, name in enumerate(run.scene.cage.element_names)}
         touched = [places[contact.point] for contact in run.contacts]
         self.touching[row, touched] = True
+        self._write_drives(row, run)
         if self.forces is not None:
             known = [contact.force_normal_n for contact in run.contacts]
             if None not in known:
                 self.forces[row] = 0.0
                 np.add.at(self.forces[row], touched, np.array(known, dtype=np.float64))
+
+    def _write_drives(self, row: int, run: Run) -> None:
+        friction = greatest_friction(run.scene, chosen_method(run.scene, run.method).friction(run.scene))
+        for place, (phase, load) in enumerate(zip(run.phases, run.scene.loads, strict=False)):
+            if not load.drive:
+                continue
+            drive = phase.drive
+            self.drive_shares[row, place] = 0.0 if drive is None else drive.share
+            if drive is not None and (drive.share > 0.0 or phase.verdict in STOPPED):
+                self.greatest_along[row, place] = drive.greatest_along
+                least = drive.critical_jam_friction
+                self.jam_possible[row, place] = least is not None and least <= friction
 
     def write_refusal(self, row: int, message: str) -> None:
         """Write that the scene of a row cannot be run."""
@@ -103,6 +130,9 @@ def empty_outcomes(scene: Scene, n_runs: int, *, with_forces: bool) -> Outcomes:
         np.full((n_runs, 3), np.nan),
         np.zeros((n_runs, n_elements), np.bool_),
         np.full((n_runs, n_elements), np.nan) if with_forces else None,
+        np.full((n_runs, n_phases), np.nan),
+        np.full((n_runs, n_phases), np.nan),
+        np.zeros((n_runs, n_phases), np.bool_),
         np.full(n_runs, None, dtype=object),
         np.zeros(n_runs),
     )
@@ -119,6 +149,9 @@ def outcomes_of(runs: Runs) -> Outcomes:
         runs.euler_zyx[rows, last],
         runs.touching[rows, last],
         None,
+        runs.drive_shares,
+        runs.greatest_along,
+        runs.jam_possible,
         np.full(n_runs, None, dtype=object),
         np.full(n_runs, runs.solve_s / max(n_runs, 1) * 1e6),
     )

@@ -14,6 +14,7 @@ from cagepose.files.study_file import StudyFile
 from cagepose.files.units import from_metres, to_metres
 from cagepose.model.checks import FloatArray
 from cagepose.model.wording import few
+from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.run import FAILURES
 from cagepose.sampling.outcome import REFUSED, Outcomes, at_rest
 
@@ -21,6 +22,9 @@ SAME_LENGTH_OF_SIZE = 1e-8
 """Fraction of the scene's size. Lengths that differ by less are the same."""
 SAME_DEG = 1e-6
 """Degrees. Angles that differ by less are the same."""
+SAME_DRIVE = {"drive": 1e-9, "force_max": 1e-9}
+"""What is measured of each drive: the share of it that is done, and the greatest force. Shares, and newtons or loads,
+that differ by less are the same."""
 WITHOUT_ANSWER = [REFUSED, *sorted(FAILURES)]
 AXES, ANGLES = ("x", "y", "z"), ("yaw_deg", "pitch_deg", "roll_deg")
 
@@ -31,7 +35,8 @@ class RowColumns:
     Attributes
     ----------
     varied, quantities
-        Names of the varied numbers, and of what is measured of each run: the final pose and the watched points.
+        Names of the varied numbers, and of what is measured of each run: the final pose, the watched points, and how
+        far each drive got with which force.
     watched
         Those of the quantities that belong to watched points.
     resolution
@@ -40,6 +45,8 @@ class RowColumns:
         Of varied numbers and quantities, by name; empty where there is none or it is not known.
     verdicts
         Those of the verdicts, the last one first.
+    driven
+        By the name of a phase that drives bodies of the cage, its place among the phases.
     touching, forces
         Those of the cage's points and shapes, by their names; no forces where the study asks for none.
     """
@@ -53,9 +60,14 @@ class RowColumns:
         self.varied = tuple(one.key for one in study.varied)
         self.watched = tuple(f"{name}_{axis}" for name in self._watched for axis in AXES)
         lengths = float(from_metres(SAME_LENGTH_OF_SIZE * scene.size_m, study.nominal.length_unit))
-        self.quantities = (*(f"position_{axis}" for axis in AXES), *ANGLES, *self.watched)
-        self.resolution = {name: SAME_DEG if name in ANGLES else lengths for name in self.quantities}
-        of_quantities = {name: "deg" if name in ANGLES else study.nominal.length_unit for name in self.quantities}
+        self.driven = {load.name: place for place, load in enumerate(scene.loads) if load.drive}
+        pose = (*(f"position_{axis}" for axis in AXES), *ANGLES, *self.watched)
+        drives = {f"{kind}_{phase}": same for phase in self.driven for kind, same in SAME_DRIVE.items()}
+        self.quantities = (*pose, *drives)
+        self.resolution = {name: SAME_DEG if name in ANGLES else lengths for name in pose} | drives
+        of_quantities = {name: "deg" if name in ANGLES else study.nominal.length_unit for name in pose}
+        of_quantities |= {f"drive_{phase}": "" for phase in self.driven}
+        of_quantities |= {f"force_max_{phase}": self._unit_along(phase) for phase in self.driven}
         self.units = study.units | of_quantities
         self.verdicts = ("verdict", *(f"verdict_{load.name}" for load in scene.loads))
         self.touching = {f"touching_{name}": name for name in elements}
@@ -67,7 +79,8 @@ class RowColumns:
     @property
     def names(self) -> tuple[str, ...]:
         """The names of all columns, in their order."""
-        measured = (*self.verdicts, *self.quantities, *self.touching, *self.forces)
+        jams = (f"jam_possible_{phase}" for phase in self.driven)
+        measured = (*self.verdicts, *self.quantities, *jams, *self.touching, *self.forces)
         return ("run", *self.varied, *measured, "accepted", "error", "solve_us")
 
     def quantities_of(self, outcomes: Outcomes) -> dict[str, FloatArray]:
@@ -81,7 +94,23 @@ class RowColumns:
         watched = [outcomes.points_world_m(point) for point in self._watched.values()]
         position, *points = (from_metres(places, unit).T for places in (outcomes.position_m, *watched))
         found = np.concatenate([position, np.degrees(outcomes.euler_zyx).T, *points])
+        drives = list[FloatArray]()
+        for phase, place in self.driven.items():
+            greatest = outcomes.greatest_along[:, place]
+            turns = self._turns_alone(phase)
+            drives += [outcomes.drive_shares[:, place], from_metres(greatest, unit) if turns else greatest]
+        found = np.concatenate([found, np.reshape(drives, (-1, len(outcomes)))])
         return dict(zip(self.quantities, found + 0.0, strict=True))  # -0.0 becomes 0.0
+
+    def _turns_alone(self, phase: str) -> bool:
+        """Whether the bodies that a phase drives turn and do not travel, so that a moment drives them."""
+        drive = self._study.nominal.scene.loads[self.driven[phase]].drive
+        return all(leg.is_turn for legs in drive.values() for leg in legs)
+
+    def _unit_along(self, phase: str) -> str:
+        scene = self._study.nominal.scene
+        force = force_unit(scene, scene.loads[self.driven[phase]])
+        return f"{force} {self._study.nominal.length_unit}" if self._turns_alone(phase) else force
 
     def columns(self, values: FloatArray, outcomes: Outcomes) -> dict[str, NDArray[Any]]:
         """Return all columns but ``run``, ``error`` and ``solve_us``."""
@@ -89,6 +118,7 @@ class RowColumns:
         columns["verdict"] = outcomes.verdict
         columns |= zip(self.verdicts[1:], outcomes.phase_verdicts.T, strict=True)
         columns |= self._measured(outcomes)
+        columns |= {f"jam_possible_{phase}": outcomes.jam_possible[:, place] for phase, place in self.driven.items()}
         columns |= zip(self.touching, outcomes.touching.T, strict=True)
         if outcomes.forces is not None:
             columns |= zip(self.forces, outcomes.forces.T, strict=True)

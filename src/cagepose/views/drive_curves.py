@@ -92,7 +92,7 @@ def drive_curves(scene: Scene, phase: PhaseRun, load: Load, unit: LengthUnit) ->
 
 def _events_of_places(phase: PhaseRun) -> list[Event]:
     """Return the event that ends at or beyond each place of a drive's curve; its first place is before the drive."""
-    first = next(place for place, event in enumerate(phase.events) if event.share > 0.0)
+    first = next((place for place, event in enumerate(phase.events) if event.share > 0.0), len(phase.events))
     before = phase.events[max(first - 1, 0)]
     return [before, *(event for event in phase.events[first:] for _ in event.path)]
 

@@ -57,7 +57,7 @@ def drive_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
         figure = Figure(figsize=(PAGE_WIDTH_IN, sum(heights) + 1.3), layout="constrained")
         columns = figure.subplots(4, len(drives), sharex="col", sharey="row", height_ratios=heights, squeeze=False).T
         for drive, (force, touching, way, angles) in zip(drives, columns, strict=True):
-            _draw_force(force, drive, length_unit)
+            draw_force(force, drive, length_unit)
             _draw_touching(touching, drive, names)
             _draw_series(way, drive.ways, drive.moved, ("x", "y", "z"))
             _draw_series(angles, drive.ways, drive.angles_deg, ("yaw", "pitch", "roll"))
@@ -71,7 +71,7 @@ def drive_figure(run: Run, length_unit: LengthUnit = "mm") -> Figure:
         least = float(from_metres(LEAST_LENGTH_OF_SIZE * run.scene.size_m, length_unit))
         _set_limits(first[2], [drive.moved for drive in drives], least)
         _set_limits(first[3], [drive.angles_deg for drive in drives], LEAST_ANGLE_DEG)
-        _set_force_limits(first[0], drives)
+        set_force_limits(first[0], drives)
         first[0].set_ylabel(_force_label(drives, run.scene, length_unit))
         for panel, text in zip(first[1:], ("touching", f"CoG moved [{length_unit}]", "angle [deg]"), strict=True):
             panel.set_ylabel(text)
@@ -92,7 +92,8 @@ def _force_label(drives: Sequence[DriveCurves], scene: Scene, unit: LengthUnit) 
     return with_unit("driver's force", one) + (f", moment [{one} {unit}]" if True in turns else "")
 
 
-def _draw_force(panel: Axes, drive: DriveCurves, unit: LengthUnit) -> None:
+def draw_force(panel: Axes, drive: DriveCurves, unit: LengthUnit) -> None:
+    """Draw the force of a drive over its way, with the greatest one and the limit at which it would stop."""
     panel.axhline(0.0, color=GREY, linewidth=0.8)
     panel.fill_between(drive.ways, 0.0, drive.forces, color=PALE, linewidth=0.0)
     panel.plot(drive.ways, drive.forces, color=BLACK, linewidth=1.6)
@@ -116,7 +117,7 @@ def _draw_force(panel: Axes, drive: DriveCurves, unit: LengthUnit) -> None:
         panel.annotate("stop_at", (0.0, limit), (2, 2), textcoords="offset points", fontsize=8.0, color=VERMILLION)
 
 
-def _set_force_limits(panel: Axes, drives: Sequence[DriveCurves]) -> None:
+def set_force_limits(panel: Axes, drives: Sequence[DriveCurves]) -> None:
     """Zero is always shown; where no drive needs a force the panel spans one unit."""
     forces = np.concatenate([drive.forces for drive in drives])
     low, high = float(np.nanmin(forces, initial=0.0)), float(np.nanmax(forces, initial=0.0))
