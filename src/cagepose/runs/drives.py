@@ -109,14 +109,6 @@ def displaced_after(run: Run, phase: int) -> FloatArray:
     return displaced_at(run.scene, [0.0 if drive is None else drive.share for drive in drives])
 
 
-def displaced_at(scene: Scene, shares: Sequence[float]) -> FloatArray:
-    """Return how the bodies of a cage are displaced after the first phases, see `displaced_bodies`, as `at_start`."""
-    moved, found = displaced_bodies(scene, shares), at_start(scene)
-    for row, body in enumerate(scene.cage.bodies, start=1):
-        found[row] = *moved[body.name].position_m, *moved[body.name].quaternion_wxyz
-    return found
-
-
 def velocity_at(
     drives: Sequence[Drive], share: float, pose_world_cage: Pose, place_world: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
