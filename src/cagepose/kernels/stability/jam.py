@@ -19,6 +19,10 @@ from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.tolerances import SPEED_OF_PROOF
 
+ROUNDING_OF_PROOF, LONGEST_PROOF = 1e-12, 1e7
+"""In lengths of the motion, which is long near a jam; and in the fastest drift: the longest motion that proves anything.
+"""
+
 
 @kernel
 def cannot_jam(contacts: ContactSet, friction: float, work: ContactWorkspace) -> bool:
@@ -39,7 +43,9 @@ def cannot_jam(contacts: ContactSet, friction: float, work: ContactWorkspace) ->
     cone_residual(contacts, friction, work.cone)
     for k in range(n):
         work.y[k] = work.cone.passive.residual[k]
-    allowed = SPEED_OF_PROOF * fastest  # not of y: one that is long enough would give way to anything
+    if length(work.y, n) > LONGEST_PROOF * fastest:  # by its rounding it would give way to anything
+        return False
+    allowed = max(SPEED_OF_PROOF * fastest, ROUNDING_OF_PROOF * length(work.y, n))
     for i in range(contacts.used[0]):
         if not contacts.states[i].counts:
             continue
