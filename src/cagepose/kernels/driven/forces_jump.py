@@ -250,3 +250,21 @@ def go_along(friction: float, work: DriveWorkspace) -> None:
     write_best_motion(0.0, work)
     for k in range(work.run.contacts.n_freedoms):
         scratch.way[k] = scratch.guided[k]
+
+
+@kernel
+def go_with_all(work: DriveWorkspace) -> None:
+    """Let the object go on the shortest way with which it goes with its bodies, and into none of them: of contacts
+    without a force those carry that would close.
+    """
+    scratch, contacts, newton = work.scratch[0], work.run.contacts, work.scratch[0].rest.newton
+    list_carrying(contacts, 0.0, scratch.rest)
+    for _ in range(ROUNDS):
+        fastest = write_best_motion(0.0, work)
+        for place in range(newton.n_carrying):
+            presses = write_unit_column(0.0, place, 0, work)
+            newton.matrix[place, 0] = presses + inner(scratch.beside, scratch.guided, contacts.n_freedoms)
+        if not count_closing(0.0, SAME * fastest, work):
+            break
+    for k in range(contacts.n_freedoms):
+        scratch.way[k] = scratch.guided[k]

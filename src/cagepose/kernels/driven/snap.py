@@ -11,12 +11,12 @@ from cagepose.kernels.contact.curvature import write_curvature
 from cagepose.kernels.contact.loads import write_load
 from cagepose.kernels.contact.metric import Frame, frame_at, moved_along_twist, twist_of, way_between
 from cagepose.kernels.driven.bodies import move_bodies, write_drift
-from cagepose.kernels.driven.forces_jump import go_along
+from cagepose.kernels.driven.forces_jump import go_with_all
 from cagepose.kernels.driven.rest_of_mode import list_carrying
 from cagepose.kernels.driven.stiffness import hold_carried, least_stiffness
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.outcome.trace import RESTS
+from cagepose.kernels.outcome.trace import LIMIT, RESTS
 from cagepose.kernels.quasistatic.first_contact import Twist
 from cagepose.kernels.quasistatic.path import Path, on_faces
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts
@@ -31,6 +31,8 @@ AHEAD = (1e-4, 1e-3, 1e-2)
 """Of a step: how far bodies go on, one after the other, where no mode is found with which the object follows."""
 CARRIES = 1e-9
 """In greatest forces: what carries less is let go."""
+SNAP_STEPS = 1000
+"""An object that has not come to rest after so many steps is pushed on."""
 STAYS = 4.0
 """In pushes: an object that comes to rest no farther away has not snapped."""
 
@@ -104,6 +106,7 @@ def snaps(
         scratch.load[k] = scratch.vectors[k, 0]
     velocity, spin = twist_of(scratch.load, frame)
     speed = norm(velocity) + setting.body.reach_m * norm(spin)
+    most = min(step_limit, first_step + SNAP_STEPS)
     for push in PUSHES:
         push_m = push * setting.size_m
         for side in (1.0, -1.0):
@@ -120,7 +123,9 @@ def snaps(
             elif push > 0.0 or side < 0.0:
                 continue
             pushed = State(begin, turned, state.turn_step_rad, 0, 0)
-            verdict, step, after = steps_from(setting, pushed, first_step, step_limit, run)
+            verdict, step, after = steps_from(setting, pushed, first_step, most, run)
+            if verdict == LIMIT and most < step_limit:
+                continue
             away = way_between(state.position, state.quaternion, after.position, after.quaternion, setting.body.reach_m)
             if away > max(STAYS * push_m, 1e-9 * setting.size_m):
                 return verdict, step, after
@@ -145,8 +150,9 @@ def rests_ahead(
     setting, run, scratch, reach_m = drive.setting, work.run, work.scratch[0], drive.setting.body.reach_m
     for i in range(run.contacts.used[0]):
         write_drift(run.contacts, i, state.position, share, work.memory)
-    go_along(setting.friction.greatest, work)
+    go_with_all(work)
     velocity, spin = twist_of(scratch.way, frame_at(setting.body, state.quaternion))
+    most = min(step_limit, first_step + SNAP_STEPS)
     for part in AHEAD:
         ahead = part * (to_share - share)
         move_bodies(setting.geometry, drive.phase, share + ahead, work.memory)
@@ -156,7 +162,9 @@ def rests_ahead(
         if is_inside(drive, begin, turned, work):
             break
         begun = State(begin, turned, state.turn_step_rad, 0, 0)
-        verdict, step, after = steps_from(setting, begun, first_step, step_limit, run)
+        verdict, step, after = steps_from(setting, begun, first_step, most, run)
+        if verdict == LIMIT and most < step_limit:
+            continue
         with_bodies = way_between(state.position, state.quaternion, begin, turned, reach_m)
         away = way_between(begin, turned, after.position, after.quaternion, reach_m)
         if (verdict == RESTS and may_stay) or away > max(STAYS * with_bodies, 1e-9 * setting.size_m):
