@@ -31,7 +31,7 @@ from cagepose.kernels.quasistatic.first_contact import Hit
 from cagepose.kernels.quasistatic.path import gap_of
 from cagepose.kernels.quasistatic.pushing_out import is_fixed
 
-STILL = 1e-9
+STILL = 1e-6
 """In sizes of the scene: so little is always allowed, as contacts are put on their faces."""
 LEAP = 8.0
 """Times the way that the object, or a body, would go on: a rest that is farther away is another one."""
