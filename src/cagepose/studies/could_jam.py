@@ -36,8 +36,8 @@ FIRST_RAYS = 8
 MOST_ROUNDS = 60
 """Rays come in so many times at most."""
 LONG, LONGEST_MOTION = 10.0, 1e6
-"""In drifts: a longer motion is asked for in its own length, as rounding is of its square. In one that is longer still it
-is as much as a contact may open too slowly.
+"""In drifts. A longer motion than the first is asked for in its own length, as rounding is of the square of it; in one
+longer than the second it is as much as a contact may open too slowly.
 """
 
 
