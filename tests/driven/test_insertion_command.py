@@ -59,16 +59,10 @@ def test_a_drive_that_does_not_get_through_permits_nothing_and_says_where_it_jam
     assert main(["insertion", OURS["drawer-jams"]]) == 0
     lines = printed(capsys)
     assert lines[0] == "drawer that jams, push: jams"
-    assert any(line.startswith("jam possible from 0 mm to 0 mm (least friction that lets it: 1.") for line in lines)
+    assert "jam possible from 0 mm to 0 mm (least friction that lets it: 1.5)" in lines
     assert "the least friction that lets it is needed at 0 mm" in lines
     assert "y mm - - jams jams" in lines
     assert not any("cannot jam" in line for line in lines)
-
-
-@pytest.mark.xfail(strict=True, reason="the kernels say 1.49998: see KERNELS_FALL_SHORT in test_jam_friction.py")
-def test_the_least_friction_with_which_a_drawer_jams_is_told_to_all_digits(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["insertion", OURS["drawer-jams"], "--along", "y"]) == 0
-    assert "jam possible from 0 mm to 0 mm (least friction that lets it: 1.5)" in printed(capsys)
 
 
 def test_the_document_has_the_same_in_the_units_of_the_scene(plate: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -23,7 +23,7 @@ OURS = {path.stem: path for path in SCENES}
 KERNELS_FALL_SHORT = pytest.mark.xfail(
     strict=True, reason="near the limit the kernels' motion is long, and its rounding counts as a force that stands"
 )
-"""A wedge could jam from 0.9699824 on (8.8), and its run says 0.96985."""
+"""A wedge could jam from 0.9699824 on (8.8), and its run says 0.9698."""
 
 
 def least(scene: Scene) -> np.ndarray:
