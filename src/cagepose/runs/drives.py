@@ -109,24 +109,6 @@ def displaced_after(run: Run, phase: int) -> FloatArray:
     return displaced_at(run.scene, [0.0 if drive is None else drive.share for drive in drives])
 
 
-def velocity_at(
-    drives: Sequence[Drive], share: float, pose_world_cage: Pose, place_world: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return how fast a body goes on after a share of its legs at a place, (3,) metres, and how fast it turns, (3,)
-    radians, for a unit share, in the world; a body without legs stands still.
-    """
-    velocity, spin = np.zeros(3), np.zeros(3)
-    if drives:
-        leg = drives[min(int((share + BEFORE_LEG_ENDS) * len(drives)), len(drives) - 1)]
-        if leg.travel_m is not None:
-            velocity = velocity + leg.travel_m
-        if leg.about_cage is not None and leg.through_cage_m is not None and leg.angle_rad is not None:
-            spin = leg.angle_rad * leg.about_cage
-            velocity = velocity + np.cross(spin, pose_world_cage.inverse_transform(place_world) - leg.through_cage_m)
-    to_world = len(drives) * pose_world_cage.rotation
-    return to_world @ velocity, to_world @ spin
-
-
 def points_displaced(scene: Scene, displaced: FloatArray) -> FloatArray:
     """Return where the cage's points are in the world, (n, 3), metres, its bodies being displaced as in `at_start`."""
     points, bodies = scene.cage.points_cage.copy(), np.array(scene.cage.element_bodies[: len(scene.cage.names)])

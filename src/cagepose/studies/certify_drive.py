@@ -6,24 +6,22 @@ products and sums alone.
 
 from __future__ import annotations
 
-from itertools import islice, product
 from typing import Any
 
 import numpy as np
 
 from cagepose.errors import CertificateError
 from cagepose.kernels.algebra.least_squares import WRENCH
-from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.kernels.contact.friction import friction_of
 from cagepose.kernels.driven.jam_proof import search_jam
 from cagepose.kernels.stability.strong import UNIQUE
 from cagepose.model.checks import FloatArray
 from cagepose.runs.cases import cases_of
 from cagepose.runs.run import Run
+from cagepose.studies.could_jam import GivesWay, Stands, could_stand, jam_question
 from cagepose.studies.drive_check import driven_problem
 from cagepose.studies.drive_proof import DrivenPlace, DriveProof, JamChoice, StopChoice, Stopped
 from cagepose.studies.driven_contacts import DriveContacts, DrivenContacts
-from cagepose.studies.jam_duals import GivesWay, Stands, could_stand
 from cagepose.studies.kernel_rows import rows_in_order
 from cagepose.studies.read_tree import read_tree
 from cagepose.studies.tolerances import SAME_FREEDOM
@@ -43,7 +41,7 @@ def drive_proof(run: Run, phase: int) -> DriveProof | None:
             last = known.at_row(row)
         except CertificateError:
             return None
-        choices = _choices(last)
+        choices = last.choices()
         found = None if choices is None else [_jam_choice(last, choice) for choice in choices]
         if found is None or None in found:
             return None
@@ -62,23 +60,10 @@ def drive_proof(run: Run, phase: int) -> DriveProof | None:
     return DriveProof(tuple(places), stopped, choices_of_stop)
 
 
-def _choices(contacts: DrivenContacts) -> list[tuple[int, ...]] | None:
-    found = list(islice(product(*reversed(contacts.problem.groups)), CHOICES_LIMIT + 1))
-    return None if len(found) > CHOICES_LIMIT else [tuple(reversed(choice)) for choice in found]
-
-
-def _asked(contacts: DrivenContacts, choice: tuple[int, ...], friction: FloatArray, growth: FloatArray) -> Any:
-    at, speed = list(choice), contacts.speed
-    columns = contacts.problem.scaled(contacts.problem.wrenches[at])
-    return could_stand(columns, contacts.drifts[at] / speed, friction[at], growth, contacts.fastest / speed)
-
-
 def _jam_choice(contacts: DrivenContacts, choice: tuple[int, ...]) -> JamChoice | None:
-    problem, size = contacts.problem, contacts.growth_size
-    growth = problem.scaled(contacts.growth) / (size or 1.0)
-    found = _asked(contacts, choice, problem.friction, growth)
+    found = could_stand(jam_question(contacts, choice))
     if isinstance(found, GivesWay):
-        return JamChoice(choice, contacts.speed * (problem.scale.T @ found.twist), None, 0.0)
+        return JamChoice(choice, contacts.speed * (contacts.problem.scale.T @ found.twist), None, 0.0)
     return JamChoice(choice, None, found.forces, found.taken) if isinstance(found, Stands) else None
 
 
@@ -87,10 +72,11 @@ def _stop_choices(verdict: Stopped, last: DrivenContacts, known: DriveContacts) 
     for one of them.
     """
     found = list[StopChoice]()
-    for choice in _choices(last) or ():
-        without = _asked(last, choice, np.zeros(len(last.drifts)), np.zeros(WRENCH))
+    for choice in last.choices() or ():
+        question = jam_question(last, choice)
+        without = could_stand(question._replace(friction=np.zeros(len(choice)), growth=np.zeros(WRENCH)))
         if verdict == "blocked" and isinstance(without, Stands):
-            forces = without.forces[:, 0]
+            forces = without.forces[:, 0].copy()  # in a row, as when it is loaded: sums are the same
             found.append(StopChoice(choice, forces, _free(last, choice, forces), None, None))
         elif verdict == "jams" and isinstance(without, GivesWay):
             tree = _search(last, choice, known)

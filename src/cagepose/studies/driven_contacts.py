@@ -7,12 +7,14 @@ kernels. Where other shapes touch is what the kernels find.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import islice, product
 from typing import Any
 
 import numpy as np
 
 from cagepose.errors import CertificateError
 from cagepose.kernels.boundary.geometry import empty_cage
+from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.kernels.contact.loads import SPRING
 from cagepose.kernels.driven.bodies import BEFORE_LEG_ENDS
 from cagepose.kernels.outcome.touching_at import find_touching
@@ -63,6 +65,11 @@ class DrivenContacts:
     def growth_size(self) -> float:
         """Length of the growth, scaled as in (5.3)."""
         return float(np.linalg.norm(self.problem.scaled(self.growth)))
+
+    def choices(self) -> list[tuple[int, ...]] | None:
+        """Return all choices of one contact of each group; None: there are more than 729."""
+        found = list(islice(product(*reversed(self.problem.groups)), CHOICES_LIMIT + 1))
+        return None if len(found) > CHOICES_LIMIT else [tuple(reversed(choice)) for choice in found]
 
 
 class DriveContacts:

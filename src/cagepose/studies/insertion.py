@@ -15,8 +15,8 @@ from cagepose.runs.cases import greatest_friction
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.misaligned import Misaligned
 from cagepose.runs.solve import run
+from cagepose.studies.could_jam import jam_friction_along
 from cagepose.studies.insertion_result import Insertion
-from cagepose.studies.jam_friction import jam_friction_along
 from cagepose.studies.misalignment import FREEDOMS, permitted_misalignment
 
 WITHIN = 0.01

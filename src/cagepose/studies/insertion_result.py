@@ -27,8 +27,8 @@ class Insertion:
         The greatest coefficient of all contacts that there can be.
     jam_friction
         At each place of the drive's curve the least coefficient of friction with which the object could jam there,
-        (n,), to 1e-5 of itself; inf: none up to 10. Of several coefficients it is the greatest, the others in
-        proportion.
+        (n,), to 1e-5 of itself; inf: none up to 10; nan: too much touches there to ask. Of several coefficients it is
+        the greatest, the others in proportion.
     bodies
         Names of the bodies whose drive may be out of place.
     takes_object
@@ -91,4 +91,4 @@ class Insertion:
         """After which share of the drive that is; None: nowhere."""
         if self.drive is None or not np.isfinite(self.jam_friction).any():
             return None
-        return float(self.drive.curve.share[int(np.argmin(self.jam_friction))])
+        return float(self.drive.curve.share[int(np.nanargmin(self.jam_friction))])

@@ -76,13 +76,9 @@ SAME_DRIFT = 1e-9
 """In the fastest drift, and in the growth of the load. Drifts and growth are those of the scene but for rounding."""
 SAME_FREEDOM = 1e-7
 """In lengths of the wrenches. A self-stress leaves motions free that close or open its contacts by less."""
-SHARE_APART = 1e-6
-"""In shares of a drive. Between two places that are so far apart it is told how a load grows."""
 MOST_JAM_FRICTION = 10.0
 """Up to this coefficient of friction it is asked whether an object could jam, as along a run."""
 JAM_FRICTION_WITHIN = 1e-5
 """Fraction of a coefficient. The least one that lets an object jam at a place is known so well."""
 LEAST_JAM_FRICTION = 1e-6
 """A coefficient of friction. Less of it is none: surfaces that are parallel but for rounding let an object jam so."""
-SPEED_OF_JAM = 1e-8
-"""In lengths of the motion. A contact that a motion closes by less gives way to the drive."""
