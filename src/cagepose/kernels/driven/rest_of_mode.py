@@ -43,7 +43,7 @@ from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.pushing_out import is_fixed
 from cagepose.kernels.quasistatic.setting import Setting
 
-MOST_STEPS = 25
+MOST_STEPS = 40
 LEAST_STIFFNESS = 1e-6
 """In lengths of the load over the size: what moves freely goes the shortest way."""
 ON_FACE, BALANCED = 4e-16, 1e-14
@@ -53,6 +53,8 @@ SOFT = 1e-7
 what they carry."""
 STUCK = 1e-14
 """In sizes of the scene: what a contact that sticks may slip."""
+TURNS_BACK = 0.9
+"""Of a slip: so much of it may be taken back in one step."""
 NEARLY_ON_FACE, NEARLY_BALANCED = 4e-13, 1e-11
 """Likewise: what will do where rounding does not let it come nearer."""
 
@@ -193,12 +195,32 @@ def write_system(contacts: ContactSet, friction: float, least: float, n: int, wo
 
 
 @kernel
+def before_turning_back(contacts: ContactSet, work: RestWorkspace) -> float:
+    """Return how much of a step may be made before a slip turns back, and its friction with it; at most 1."""
+    newton, most = work.newton, 1.0
+    for place in range(newton.n_carrying):
+        if newton.modes[place] != SLIPS:
+            continue
+        columns, along, size = contacts.rows[newton.contacts[place]].columns, 0.0, 0.0
+        for which in range(2):
+            slip = work.slips[place, which]
+            along += slip * inner(columns[1 + which], newton.changes, contacts.n_freedoms)
+            size += slip * slip
+        if along < 0.0 < size:
+            most = min(most, TURNS_BACK * size / -along)
+    return most
+
+
+@kernel
 def take_step(contacts: ContactSet, friction: float, stiff: float, n: int, work: RestWorkspace) -> None:
     """Solve the system; change the forces, and write the motion."""
     newton, n_freedoms = work.newton, contacts.n_freedoms
     eliminate(newton.matrix, newton.order, newton.greatest_of, n)
     for k in range(n):
         newton.changes[newton.order[k]] = newton.matrix[k, n]
+    shorter = before_turning_back(contacts, work)
+    for k in range(n):
+        newton.changes[k] *= shorter
     for k in range(n_freedoms):
         work.delta[k] = newton.changes[k]
     for place in range(newton.n_carrying):
