@@ -18,22 +18,19 @@ from cagepose.kernels.algebra.least_squares import WRENCH, append_column, clear,
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
-from cagepose.kernels.contact.cone import clear_cone, cone_residual
+from cagepose.kernels.contact.cone import clear_cone, cone_residual, write_forces
 from cagepose.kernels.contact.contact_set import ContactSet, count_chosen, is_smooth
 from cagepose.kernels.contact.coulomb import coulomb_error
-from cagepose.kernels.contact.curvature import write_curvature
+from cagepose.kernels.contact.curvature import clear_matrix, write_curvature
 from cagepose.kernels.contact.loads import PhaseLoad, arm_of, spring_vector, write_load
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, write_scaled_wrench
 from cagepose.kernels.contact.on_circle import keeps_on_circle
 from cagepose.kernels.contact.onset import motion_with_faces
 from cagepose.kernels.driven.bodies import DriveMemory, move_bodies, twist_of_body, write_drift
 from cagepose.kernels.driven.rest_of_mode import follow_contact
-from cagepose.kernels.driven.stiffness import STABLE, least_stiffness
 from cagepose.kernels.driven.workspace import DriveScratch, DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
 
-FOUND, UNSTABLE, NO_WAY_ON = 0, 1, 2
-"""Whether a rest goes on; its stiffness is not positive along what is free; or no motion obeys the law."""
 SHORT = 1e-4
 """In sizes of the scene, and in lengths of the load: an advance for which the linear problem is asked."""
 RHO = 1e-3
@@ -162,31 +159,33 @@ def longest_short(setting_size: float, contacts: ContactSet, terms: float, scrat
 
 
 @kernel
-def find_mode(drive: DriveSetting, position: Vector, quaternion: Quaternion, share: float, work: DriveWorkspace) -> int:
-    """Find what the contacts at a rest do as the drive goes on; return FOUND, UNSTABLE or NO_WAY_ON.
+def find_mode(
+    drive: DriveSetting, position: Vector, quaternion: Quaternion, share: float, work: DriveWorkspace
+) -> bool:
+    """Find what the contacts at a rest do as the drive goes on; False: no motion obeys the law.
 
     Given, in ``work.run.contacts``: forces of the rest, and which contacts stick; which of them are chosen. Filled:
     what counts carries, with forces, and sticks or slips; and in the scratch the motion, for a unit share. Where
     friction holds what it need not, forces may jump as the drive goes on: it is asked again with what carries then.
     """
     for turn in range(JUMPS if drive.setting.friction.greatest > 0.0 else 1):
-        code, same = solve_rate(drive, position, quaternion, share, work)
-        if code != FOUND and turn == 0:
-            return code
-        if code != FOUND:  # what was found before that stands
+        found, same = solve_rate(drive, position, quaternion, share, work)
+        if not found and turn == 0:
+            return False
+        if not found:  # what was found before that stands
             for i in range(work.run.contacts.used[0]):
                 state = work.run.contacts.states[i]
                 state.counts = state.chosen and state.forces[0] > 0.0
             break
         if same:
             break
-    return FOUND
+    return True
 
 
 @kernel
 def solve_rate(
     drive: DriveSetting, position: Vector, quaternion: Quaternion, share: float, work: DriveWorkspace
-) -> tuple[int, bool]:
+) -> tuple[bool, bool]:
     """As `find_mode`, with what carries now; return whether all of that carries on, too."""
     setting, scratch, contacts, turned = drive.setting, work.scratch[0], work.run.contacts, work.run.turned
     friction, n, solver = setting.friction.greatest, contacts.n_freedoms, work.run.scratch[0].solver
@@ -201,8 +200,10 @@ def solve_rate(
     rho = RHO * terms / setting.size_m
     if not factor_stiffness(rho, n, scratch):
         go_with_bodies(contacts, True, scratch)
-        if least_stiffness(drive, contacts, scratch.stiffness, work) < STABLE or not factor_stiffness(rho, n, scratch):
-            return UNSTABLE, True
+        if not factor_stiffness(rho, n, scratch):  # as if equally stiff all around: forces jump, whatever bends
+            rho += frobenius_norm(scratch.stiffness, n)
+            clear_matrix(scratch.stiffness, n)
+            factor_stiffness(rho, n, scratch)
 
     # The problem in the coordinates of the stiffness, without the motion that goes with the bodies.
     ahead = longest_short(setting.size_m, contacts, terms, scratch)
@@ -226,16 +227,16 @@ def solve_rate(
     clear_cone(solver.cone, b, n, scale if scale > 0.0 else terms / math.sqrt(rho))
     cone_residual(turned, friction, solver.cone)
     if not motion_with_faces(turned, friction, b, y, solver):
-        return NO_WAY_ON, True
+        return False, True
     if friction == 0.0:
-        read_forces(turned, work)
+        write_forces(solver.cone, 0.0, turned)
     speed = fastest_in(turned, y, n)
     if coulomb_error(turned, friction, y) > LAW * speed:
-        return NO_WAY_ON, True
+        return False, True
     solve_upper(scratch.factor, y, n)
     for k in range(n):
         scratch.way[k] = scratch.guided[k] + y[k] / ahead
-    return FOUND, read_mode(drive, position, frame, share, speed, work)
+    return True, read_mode(drive, position, frame, share, speed, work)
 
 
 @kernel
@@ -245,17 +246,6 @@ def fastest_in(contacts: ContactSet, y: FloatArray, n: int) -> float:
     for i in range(contacts.used[0]):
         fastest = max(fastest, length(contacts.rows[i].drift, 3) / length(contacts.rows[i].columns[0], n))
     return fastest
-
-
-@kernel
-def read_forces(turned: ContactSet, work: DriveWorkspace) -> None:
-    """Write the forces of a solution without friction."""
-    cone = work.run.scratch[0].solver.cone
-    for i in range(turned.used[0]):
-        for j in range(3):
-            turned.states[i].forces[j] = 0.0
-    for k in range(cone.passive.used):
-        turned.states[cone.contacts[cone.passive.labels[k]]].forces[0] += cone.passive.x[k]
 
 
 @kernel
