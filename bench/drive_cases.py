@@ -106,12 +106,10 @@ DRIVE_CASES = {
             play_m=1e-3,
             settings={
                 "step_s": 0.01,
-                "drive_s": 10.0,
+                "drive_s": 5.0,
                 "settle_s": 0.0,
                 "damping_ratio": 0.5,
-                "solver": "CG",
                 "cone": "pyramidal",
-                "tolerance": 1e-10,
             },
         ),
         DriveCase(
@@ -119,10 +117,11 @@ DRIVE_CASES = {
             "insertion",
             play_m=5e-5,
             settings={
-                "step_s": 5e-4,
+                "step_s": 0.001,
                 "drive_s": 3.0,
-                "damping_per_s": 5.0,
-                "mass_times": 0.1,
+                "damping_per_s": 2.0,
+                "mass_times": 0.3,
+                "impedance": 0.999,
                 "ccd_tolerance": 1e-14,
             },
         ),
@@ -146,7 +145,14 @@ DRIVE_CASES = {
             "drawer, friction 0.5",
             "drawer-jams",
             changes=("friction.coefficient=0.5",),
-            settings={"step_s": 0.001, "drive_s": 30.0, "damping_per_s": 20.0, "damping_ratio": 4.0},
+            settings={
+                "step_s": 0.003,
+                "drive_s": 15.0,
+                "settle_s": 0.0,
+                "damping_per_s": 100.0,
+                "cone": "pyramidal",
+                "integrator": "implicitfast",
+            },
         ),
         DriveCase(
             "drawer, friction 1.6", "drawer-jams", settings={"step_s": 0.002, "settle_s": 0.06, "cone": "pyramidal"}

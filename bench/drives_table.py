@@ -31,7 +31,7 @@ def _own_rows(case: DriveCase) -> Iterator[Row]:
     times_s, _ = ours.measure(case.scene, METHOD, BUDGET_S)
     for part in ours.PARTS:
         wall_s, cpu_s = times_s[part]
-        details = {"verdict": case.ours.verdict, "steps": len(drive.curve.share), "share": drive.share, "cpu_s": cpu_s}
+        details = {"verdict": case.ours.verdict, "steps": len(drive.curve.share), "cpu_s": cpu_s}
         yield Row("drives", case.name, ours.engine_name(METHOD, part), wall_s, details=details)
 
 
@@ -49,13 +49,10 @@ def mujoco_row(case: DriveCase) -> Row:
     details: dict[str, object] = {
         "verdict": "blocked" if end.is_blocked else "at its end",
         "steps": end.steps,
-        "share": end.share,
         "cpu_s": median_cpu_s(engine.run, 0.0, REPEATS),
         "apart_um": off.apart_m * 1e6,
-        "allowed_um": case.allowed_m * 1e6,
         "force_off": off.force,
         "right": off.is_right(case.allowed_m),
-        "solids": engine.n_solids,
     }
     return Row(
         "drives",

@@ -131,7 +131,7 @@ class DrivenMujoco:
             for which, spring in enumerate(self._springs)
             if spring.of is not None and spring in scene.loads[-1].springs
         ]
-        self.n_solids, self.error_m = len(assembly.object) + len(assembly.cage), assembly.error_m
+        self.error_m = assembly.error_m
 
     def run(self) -> DriveEnd:
         """Bring the object to rest under each load, then drive."""
