@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from rich.console import Console
 
 from bench.batch_table import batch_rows
+from bench.drives_table import drive_rows
 from bench.first_use_table import first_use_rows
 from bench.growth_table import growth_rows
 from bench.limits import measured_limits
@@ -23,6 +24,7 @@ TABLES: dict[str, Callable[[], Iterator[Row]]] = {
     "rail": rail_rows,
     "scenes": scene_rows,
     "shapes": shape_rows,
+    "drives": drive_rows,
     "growth": growth_rows,
     "batch": batch_rows,
     "first-use": first_use_rows,

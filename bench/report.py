@@ -14,6 +14,7 @@ TITLES = {
     "rail": "The rail: gravity, then the push. Error: tilt, as a part of the play angle. Ratio: to the slower of ours",
     "scenes": "All scenes, both methods: solve and proof",
     "shapes": "True shapes beside MuJoCo. Apart, penetration: in sizes of the scene. Ratio: to ours",
+    "drives": "Drives beside MuJoCo, tuned for each. Apart: the farthest point, or body. Ratio: to ours",
     "growth": "How the cost of one run grows: exponent of a power law fitted to the upper half",
     "batch": "Many runs in one call",
     "first-use": "The first run in a new process",
