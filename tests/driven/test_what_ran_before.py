@@ -5,22 +5,18 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-import pytest
-
 from cagepose import run
 from cagepose.files.scene_file import read_scene_file
 from driven.insertions import Insertion
 from our_scenes import SCENES
 
 
-@pytest.mark.xfail(reason="the implicit step takes the drift that a drive has left in its contacts")
 def test_a_peg_that_touches_twice_after_one_that_touches_once() -> None:
     once, twice = Insertion(5.05, 0.4, 0.0, 0.0), Insertion(5.01, 0.3, math.radians(0.5), 0.0)
     run(once.scene(3.0, [10.0]))
     assert run(twice.scene(3.0, [10.0])).verdict == "rests"
 
 
-@pytest.mark.xfail(reason="where a drive jams at its start, its drivers are those of the run before")
 def test_a_drawer_that_jams_at_once_after_one_that_goes_in() -> None:
     path: Path = next(path for path in SCENES if path.stem == "drawer-jams")
     run(read_scene_file(path, ("friction.coefficient=0.5",)).scene)

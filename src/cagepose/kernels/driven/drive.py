@@ -19,6 +19,7 @@ from cagepose.kernels.driven.bodies import (
     next_leg,
     twist_of_body,
     write_drift,
+    write_drivers,
 )
 from cagepose.kernels.driven.could_jam import note_jams
 from cagepose.kernels.driven.history import add_work, note_snap, write_driven, write_jump
@@ -131,6 +132,7 @@ def drive_on(
     scratch.least_jam = math.inf
     run.trace.rows[first_step - 1].could_jam = note_jams(drive, position, quaternion, 0.0, work)
     scratch.greatest = scratch.greatest_at = 0.0
+    write_drivers(run.contacts, position, quaternion, setting.load, 0.0, work.memory, work.drivers)
     scratch.work = scratch.rubbed = scratch.lost = 0.0
     for k in range(run.contacts.n_freedoms):
         scratch.way[k] = scratch.end_way[k] = 0.0

@@ -190,6 +190,7 @@ def implicit_step(
         turned.states[i].counts = contacts.states[i].counts
         for j in range(3):
             solve_lower(work.factor, contacts.rows[i].columns[j], turned.rows[i].columns[j], n)
+            turned.rows[i].drift[j] = 0.0
     solve_lower(work.factor, solver.load, work.b, n)
     terms = solver.load_terms * length(work.b, n) / length(solver.load, n)
     if equilibrium_with_faces(turned, friction, AT_REST, work.b, terms, solver) != MOVES:

@@ -20,8 +20,7 @@ from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.tolerances import SPEED_OF_PROOF
 
 ROUNDING_OF_PROOF, LONGEST_PROOF = 1e-12, 1e7
-"""In lengths of the motion, which is long near a jam; and in the fastest drift: the longest motion that proves anything.
-"""
+"""In lengths of the motion, which is long near a jam; and in the fastest drift: a longer motion proves nothing."""
 
 
 @kernel
