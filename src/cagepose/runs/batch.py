@@ -73,12 +73,10 @@ class Batch:
         is_driven = drives & ((endings.shares > 0.0) | np.isin(codes, (BLOCKED, JAMS, STOPS)))
         different, places = np.unique(self._frictions, return_inverse=True)
         friction = np.array([greatest_friction(self._scene, one) for one in different.tolist()])[places]
-        # what is stopped before it has begun to move has no greatest force, and could jam if it does
-        greatest = np.where(endings.shares > 0.0, endings.greatest, 0.0)
-        could_jam = np.where(endings.shares > 0.0, endings.least_jams <= friction[:, None], codes != STOPS)
+        could_jam = endings.least_jams <= friction[:, None]
         return DriveEnds(
             np.where(drives & (codes != NOT_RUN) & (codes != INVALID), endings.shares, np.nan),
-            np.where(is_driven, greatest, np.nan),
+            np.where(is_driven, endings.greatest, np.nan),
             is_driven & could_jam,
         )
 

@@ -131,8 +131,9 @@ def drive_on(
     begin_at_rest(drive, work)
     scratch.least_jam = math.inf
     run.trace.rows[first_step - 1].could_jam = note_jams(drive, position, quaternion, 0.0, work)
-    scratch.greatest = scratch.greatest_at = 0.0
-    write_drivers(run.contacts, position, quaternion, setting.load, 0.0, work.memory, work.drivers)
+    driving = write_drivers(run.contacts, position, quaternion, setting.load, 0.0, work.memory, work.drivers)
+    run.trace.rows[first_step - 1].driving = driving
+    scratch.greatest, scratch.greatest_at = max(driving, 0.0), 0.0
     scratch.work = scratch.rubbed = scratch.lost = 0.0
     for k in range(run.contacts.n_freedoms):
         scratch.way[k] = scratch.end_way[k] = 0.0

@@ -51,6 +51,7 @@ def phase_from(
     )
     verdict, n_steps, end = steps_from(setting, state, 0, rules.step_limit, work.run)
     share = 0.0
+    work.scratch[0].greatest = work.scratch[0].least_jam = math.nan  # of what is not driven
     if is_driven and verdict == RESTS:
         drive = DriveSetting(setting, phase, cases.drives.stop_at[phase])
         verdict, n_steps, end, share = drive_on(drive, end, n_steps, rules.step_limit, work)
@@ -192,8 +193,8 @@ def run_quasistatic_cases(
                     verdict = STALLED
             write_ending(endings, case, phase, verdict, n_steps, position, quaternion, start, part)
             endings.shares[case, phase] = share
-            endings.greatest[case, phase] = work.scratch[0].greatest if share > 0.0 else math.nan
-            endings.least_jams[case, phase] = work.scratch[0].least_jam if share > 0.0 else math.nan
+            endings.greatest[case, phase] = work.scratch[0].greatest
+            endings.least_jams[case, phase] = work.scratch[0].least_jam
             for i in range(run.contacts.used[0]):
                 endings.touching[case, phase, run.contacts.rows[i].cage_part] = True
             if not goes_on_after(verdict):
