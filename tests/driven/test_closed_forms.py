@@ -196,6 +196,7 @@ def test_a_truss_that_is_pushed_through_has_its_curve_and_snaps_at_its_dead_poin
     (snapped,) = (event for event in phase.events if event.rule == "free")
     assert snapped.share == pytest.approx(0.62, abs=1e-11)
     assert phase.pose.position_m == pytest.approx([0.0, 0.0, -HIGH], abs=1e-9)
+    assert drive.along == pytest.approx(0.0, abs=1e-12)
     assert phase.verdict == "rests"
 
 

@@ -28,7 +28,24 @@ def docking(yaw_deg: float, pitch_deg: float, way_m: float = 0.03) -> Scene:
     return Scene(rail, cage, [Load("weight", gravity=weight), Load("dock", gravity=weight, drive=along)])
 
 
-@pytest.mark.parametrize(("yaw_deg", "pitch_deg"), [(0.0, 0.0), (0.0, 0.1), (-0.3, 0.0), (-0.2, -0.2)])
+@pytest.mark.parametrize(
+    ("yaw_deg", "pitch_deg"),
+    [
+        (0.0, 0.0),
+        (0.0, 0.1),
+        (-0.3, 0.0),
+        (-0.2, -0.2),
+        (0.1, 0.0),
+        (0.33, 0.0),
+        (0.0, 0.3),
+        (0.1, 0.1),
+        (-0.1, -0.2),
+        (0.25, -0.25),
+        (0.0, 0.2),
+        (-0.1, 0.1),
+        (0.2, 0.1),
+    ],
+)
 def test_within_its_play_the_rail_comes_into_line(yaw_deg: float, pitch_deg: float) -> None:
     """Up to the play that the pins have left in the holes: 0.34 mm, over at least 500 mm."""
     _, phase = run(docking(yaw_deg, pitch_deg)).phases

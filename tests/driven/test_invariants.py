@@ -70,7 +70,7 @@ def test_a_body_that_never_touches_changes_nothing(name: str) -> None:
         assert found.drive.work_j == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize("insertion", [SMOOTH, ROUGH], ids=["smooth", "rough"])
+@pytest.mark.parametrize("insertion", [SMOOTH, ROUGH, UPON_TWO], ids=["smooth", "rough", "two points"])
 def test_a_drive_that_is_cut_in_two_phases_is_one(insertion: Insertion) -> None:
     (whole,) = run(insertion.scene(3.0, [LG - 30.0])).phases
     _, second = run(insertion.scene(3.0, [LG - 17.0, LG - 30.0])).phases
@@ -80,7 +80,7 @@ def test_a_drive_that_is_cut_in_two_phases_is_one(insertion: Insertion) -> None:
     assert second.drive.along == pytest.approx(whole.drive.along, rel=1e-9)
 
 
-@pytest.mark.parametrize("insertion", [SMOOTH], ids=["one point"])
+@pytest.mark.parametrize("insertion", [SMOOTH, UPON_TWO], ids=["one point", "two points"])
 def test_a_drive_there_and_back_without_friction_brings_the_pose_back(insertion: Insertion) -> None:
     first, _, again = run(insertion.scene(3.0, [LG - 4.0, LG - 20.0, LG - 4.0])).phases
     assert_same_pose(again.pose, first.pose)
@@ -100,8 +100,8 @@ WAYS = {
 
 @pytest.mark.parametrize(
     ("insertion", "way"),
-    [(SMOOTH, "travel"), (ROUGH, "travel"), (SMOOTH, "turn")],
-    ids=["smooth travel", "rough travel", "smooth turn"],
+    [(SMOOTH, "travel"), (ROUGH, "travel"), (SMOOTH, "turn"), (ROUGH, "turn")],
+    ids=["smooth travel", "rough travel", "smooth turn", "rough turn"],
 )
 def test_only_who_moves_against_whom_matters(insertion: Insertion, way: str) -> None:
     """The support is driven over the hole, or the hole the other way below it."""
@@ -121,7 +121,7 @@ def test_only_who_moves_against_whom_matters(insertion: Insertion, way: str) -> 
     assert other.work_j == pytest.approx(one.work_j, rel=1e-9 if insertion.friction == 0.0 else 1e-3)
 
 
-@pytest.mark.parametrize("insertion", [SMOOTH], ids=["one point"])
+@pytest.mark.parametrize("insertion", [SMOOTH, UPON_TWO], ids=["one point", "two points"])
 def test_without_friction_the_length_of_steps_does_not_matter(insertion: Insertion) -> None:
     scene = insertion.scene(3.0, [LG - 30.0])
     method = chosen_method(scene, None)
@@ -131,7 +131,7 @@ def test_without_friction_the_length_of_steps_does_not_matter(insertion: Inserti
     assert_same_pose(halves.pose, whole.pose)
 
 
-@pytest.mark.parametrize("insertion", [SMOOTH, ROUGH], ids=["one point", "rough"])
+@pytest.mark.parametrize("insertion", [SMOOTH, ROUGH, UPON_TWO], ids=["one point", "rough", "two points"])
 def test_work_is_what_springs_have_gained_and_friction_took(insertion: Insertion) -> None:
     settled, deeper = run(insertion.scene(3.0, [LG - 5.0, LG - 30.0])).phases
 

@@ -86,7 +86,7 @@ def polygon(random: np.random.Generator) -> FloatArray:
     return corners
 
 
-@pytest.mark.parametrize("number", [0, 1, 3, 4, 6, 8, 11, 12, 13, 14, 15])
+@pytest.mark.parametrize("number", range(30))
 def test_a_polygon_is_turned_to_a_local_least_width(number: int) -> None:
     random = np.random.default_rng(44)
     for _ in range(number + 1):
@@ -95,7 +95,7 @@ def test_a_polygon_is_turned_to_a_local_least_width(number: int) -> None:
 
 
 HELD = [(0.1, 61.0), (0.3, -50.0), (0.3, 50.0), (0.3, 61.0), (0.3, 80.0), (0.6, 40.0), (0.6, 61.0), (0.6, 80.0)]
-TURNED = [(0.1, 10.0), (0.1, 80.0), (0.3, 10.0), (0.3, 30.0), (0.6, 30.0)]
+TURNED = [(0.1, 10.0), (0.1, 80.0), (0.3, 10.0), (0.3, 30.0), (0.3, 40.0), (0.6, 30.0)]
 
 
 @pytest.mark.parametrize(("friction", "angle_deg"), [*HELD, *TURNED])
