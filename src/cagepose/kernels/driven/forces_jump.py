@@ -45,8 +45,8 @@ def along_friction(place: int, work: DriveWorkspace) -> tuple[float, float]:
 
 @kernel
 def write_unit_column(friction: float, place: int, which: int, work: DriveWorkspace) -> float:
-    """Write the unit column of a contact into ``scratch.beside``, that of its force with friction where it slips;
-    return its drift along it. Its length is in ``scratch.load[0]``.
+    """Write a column of a contact into ``scratch.beside``, that of its force with friction where it slips, in lengths
+    of its normal's, and return its drift along it; the length is in ``scratch.load[0]``.
     """
     scratch, rest, contacts = work.scratch[0], work.scratch[0].rest, work.run.contacts
     n, row = contacts.n_freedoms, contacts.rows[rest.newton.contacts[place]]
@@ -55,7 +55,7 @@ def write_unit_column(friction: float, place: int, which: int, work: DriveWorksp
     for k in range(n):
         slips = one * row.columns[1, k] + two * row.columns[2, k]
         scratch.beside[k] = row.columns[which, k] + rubs * slips
-    size = length(scratch.beside, n)
+    size = length(row.columns[0], n)
     for k in range(n):
         scratch.beside[k] /= size
     scratch.load[0] = size
@@ -143,9 +143,13 @@ def count_closing(friction: float, least: float, work: DriveWorkspace) -> bool:
     changed.
     """
     scratch, contacts, newton = work.scratch[0], work.run.contacts, work.scratch[0].rest.newton
-    n, changed = contacts.n_freedoms, False
+    n, changed, none = contacts.n_freedoms, False, 0.0
+    for place in range(newton.n_carrying):
+        none = max(none, LEAST_FORCE * contacts.states[newton.contacts[place]].forces[0])
     for place in range(newton.n_carrying):
         state = contacts.states[newton.contacts[place]]
+        if state.forces[0] < none:
+            state.forces[0] = state.forces[1] = state.forces[2] = 0.0
         if state.forces[0] <= 0.0 and newton.matrix[place, 0] < -least:
             state.counts = state.is_sticking = False
             changed = True

@@ -58,6 +58,7 @@ def mode_lasts(
             continue
         write_guards(drive, end, turned, share + ahead, work, work.middle)
         if least_of_mode(work) >= 0.0:
+            take_forces(work)
             write_way(drive, end, turned, share + ahead, -min(APART, ahead), work)
             for k in range(run.contacts.n_freedoms):
                 scratch.way[k] = scratch.end_way[k]

@@ -128,7 +128,7 @@ def go_on(
         i = rest.newton.contacts[place]
         if rest.newton.modes[place] != STICKS:
             continue
-        write_drift(trial, i, end, to_share, work.memory)
+        write_drift(trial, i, end, to_share - APART, work.memory)
         row = trial.rows[i]
         along = plus(goes, cross(spin, vector_from(row.arm)))
         for which in range(2):
