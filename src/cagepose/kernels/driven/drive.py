@@ -22,11 +22,11 @@ from cagepose.kernels.driven.bodies import (
     write_drivers,
 )
 from cagepose.kernels.driven.could_jam import note_jams
-from cagepose.kernels.driven.history import add_work, note_snap, write_driven, write_jump
+from cagepose.kernels.driven.history import add_work, keep_greatest, note_snap, write_driven, write_jump
 from cagepose.kernels.driven.pivot import keep_mode, mode_lasts, return_to_mode
 from cagepose.kernels.driven.rate import APART, find_mode
 from cagepose.kernels.driven.rested import begin_at_rest, find_rested, keep_forces
-from cagepose.kernels.driven.snap import opened_pose, rests_ahead, snaps
+from cagepose.kernels.driven.snap import MOVED, opened_pose, rests_ahead, snaps
 from cagepose.kernels.driven.stopped import OPENS, stopped_verdict
 from cagepose.kernels.driven.trial import write_way
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
@@ -113,7 +113,59 @@ def rate_lasts(
 def has_moved(drive: DriveSetting, state: State, after: State) -> bool:
     reach_m = drive.setting.body.reach_m
     away = way_between(state.position, state.quaternion, after.position, after.quaternion, reach_m)
-    return away > 1e-9 * drive.setting.size_m
+    return away > MOVED * drive.setting.size_m
+
+
+@kernel
+def leave_rest(
+    drive: DriveSetting,
+    state: State,
+    share: float,
+    to_share: float,
+    first: int,
+    step_limit: int,
+    work: DriveWorkspace,
+) -> tuple[int, int, State, float]:
+    """Go to another rest where no mode lasts: the object snaps, or opens its contacts to second order, or the bodies go
+    on a little; return (verdict code, number of steps, state, share), RESTS: the drive goes on from there.
+    """
+    position, quaternion, reached = state.position, state.quaternion, share
+    verdict, step, after = snaps(drive, state, first, step_limit, work)
+    if verdict == RESTS and not has_moved(drive, state, after):
+        stopped = stopped_verdict(drive, position, quaternion, share, work)
+        if stopped == OPENS:
+            return open_contacts(drive, state, share, step, step_limit, work)
+        if stopped != STALLED or state.n_still >= STILL_LIMIT:
+            return stopped, step, state, share
+        return_to_mode(work)
+        may_stay = drive.setting.friction.greatest == 0.0 or find_mode(drive, position, quaternion, share, work)
+        return_to_mode(work)
+        verdict, step, after, reached = rests_ahead(drive, state, share, to_share, step, step_limit, may_stay, work)
+        if reached == share:
+            return STALLED, step, state, share
+    note_snap(drive, state, after, first, step, share, reached, verdict, work)
+    if verdict == RESTS:
+        begin_at_rest(drive, work)
+    return verdict, step, after, reached
+
+
+@kernel
+def open_contacts(
+    drive: DriveSetting, state: State, share: float, step: int, step_limit: int, work: DriveWorkspace
+) -> tuple[int, int, State, float]:
+    """Let the object go a little where that opens its contacts to second order; see `leave_rest`."""
+    if step >= step_limit:
+        return LIMIT, step, state, share
+    opened, end, turned = opened_pose(drive, state.position, state.quaternion, work)
+    after = State(end, turned, state.turn_step_rad, 0, 0)
+    if not opened or state.n_still + 1 >= STILL_LIMIT:
+        return STALLED, step, state, share
+    write_state(work.run.trace.rows[step], state)
+    if not stand_at(drive.setting, end, turned, work.run):
+        return STALLED, step, after, share
+    begin_at_rest(drive, work)
+    write_driven(drive, step, share, end, turned, True, work)
+    return RESTS, step + 1, after, share
 
 
 @kernel
@@ -133,7 +185,8 @@ def drive_on(
     run.trace.rows[first_step - 1].could_jam = note_jams(drive, position, quaternion, 0.0, work)
     driving = write_drivers(run.contacts, position, quaternion, setting.load, 0.0, work.memory, work.drivers)
     run.trace.rows[first_step - 1].driving = driving
-    scratch.greatest, scratch.greatest_at = max(driving, 0.0), 0.0
+    scratch.greatest = scratch.greatest_at = 0.0
+    keep_greatest(0.0, driving, work)
     scratch.work = scratch.rubbed = scratch.lost = 0.0
     for k in range(run.contacts.n_freedoms):
         scratch.way[k] = scratch.end_way[k] = 0.0
@@ -196,36 +249,10 @@ def drive_on(
             goes_on = False
             continue
         return_to_mode(work)
-        first, reached = step, share
-        verdict, step, after = snaps(drive, here, step, step_limit, work)
-        if verdict == RESTS and not has_moved(drive, here, after):
-            stopped = stopped_verdict(drive, position, quaternion, share, work)
-            if stopped == OPENS:
-                opened, end, turned = opened_pose(drive, position, quaternion, work)
-                n_still += 1
-                if not opened or n_still >= STILL_LIMIT:
-                    break
-                write_state(run.trace.rows[step], here)
-                position, quaternion = end, turned
-                if not stand_at(setting, position, quaternion, run):
-                    break
-                begin_at_rest(drive, work)
-                write_driven(drive, step, share, position, quaternion, True, work)
-                step += 1
-                continue
-            if stopped != STALLED or n_still >= STILL_LIMIT:
-                return stopped, step, here, share
-            return_to_mode(work)
-            may_stay = setting.friction.greatest == 0.0 or find_mode(drive, position, quaternion, share, work)
-            return_to_mode(work)
-            verdict, step, after, reached = rests_ahead(drive, here, share, to_share, step, step_limit, may_stay, work)
-            if reached == share:
-                return STALLED, step, here, share
-        note_snap(drive, here, after, first, step, share, reached, verdict, work)
+        verdict, step, after, share = leave_rest(drive, here, share, to_share, step, step_limit, work)
         if verdict != RESTS:
-            return verdict, step, after, reached
-        position, quaternion, share, n_still = after.position, after.quaternion, reached, n_still + 1
-        begin_at_rest(drive, work)
+            return verdict, step, after, share
+        position, quaternion, n_still = after.position, after.quaternion, n_still + 1
         if n_still > STILL_LIMIT:
             break
     verdict = LIMIT if step >= step_limit else STALLED

@@ -44,9 +44,9 @@ def along_friction(place: int, work: DriveWorkspace) -> tuple[float, float]:
 
 
 @kernel
-def write_unit_column(friction: float, place: int, which: int, work: DriveWorkspace) -> float:
+def write_force_column(friction: float, place: int, which: int, work: DriveWorkspace) -> float:
     """Write a column of a contact into ``scratch.beside``, that of its force with friction where it slips, in lengths
-    of its normal's, and return its drift along it; the length is in ``scratch.load[0]``.
+    of its normal's, and return its drift along it.
     """
     scratch, rest, contacts = work.scratch[0], work.scratch[0].rest, work.run.contacts
     n, row = contacts.n_freedoms, contacts.rows[rest.newton.contacts[place]]
@@ -58,7 +58,6 @@ def write_unit_column(friction: float, place: int, which: int, work: DriveWorksp
     size = length(row.columns[0], n)
     for k in range(n):
         scratch.beside[k] /= size
-    scratch.load[0] = size
     drift: float = row.drift[which] + rubs * (one * row.drift[1] + two * row.drift[2])
     return drift / size
 
@@ -76,7 +75,7 @@ def write_best_motion(friction: float, work: DriveWorkspace) -> float:
             normal[j, k] = 0.0
     for place in range(rest.newton.n_carrying):
         for which in range(3 if rest.newton.modes[place] == STICKS else 1):
-            drift = write_unit_column(friction, place, which, work)
+            drift = write_force_column(friction, place, which, work)
             fastest = max(fastest, abs(drift))
             for j in range(n):
                 scratch.change[j] -= scratch.beside[j] * drift
@@ -94,6 +93,22 @@ def write_best_motion(friction: float, work: DriveWorkspace) -> float:
             for k in range(n):
                 y[k] += along / normal[e, e] * vectors[k, e]
     return fastest
+
+
+@kernel
+def write_presses(friction: float, work: DriveWorkspace) -> tuple[float, float]:
+    """Write the best motion, and how fast each contact would still close and slip in it, a row for each, in lengths of
+    its normal's column; return (the fastest drift, the fastest of these).
+    """
+    scratch, newton, hardest = work.scratch[0], work.scratch[0].rest.newton, 0.0
+    fastest = write_best_motion(friction, work)
+    for place in range(newton.n_carrying):
+        for which in range(3 if newton.modes[place] == STICKS else 1):
+            drift = write_force_column(friction, place, which, work)
+            presses = drift + inner(scratch.beside, scratch.guided, work.run.contacts.n_freedoms)
+            hardest = max(hardest, abs(presses))
+            newton.matrix[place, which] = presses
+    return fastest, hardest
 
 
 @kernel
@@ -116,24 +131,17 @@ def write_rates_apart(drive: DriveSetting, work: DriveWorkspace) -> bool:
     """Write how the forces rise and fall where what carries cannot go with its bodies, a row for each contact; False:
     it can. Of contacts without a force those count that would close.
     """
-    newton, friction, hardest = work.scratch[0].rest.newton, drive.setting.friction.greatest, 0.0
-    fastest = 0.0
+    newton, friction = work.scratch[0].rest.newton, drive.setting.friction.greatest
+    fastest = hardest = 0.0
     for _ in range(ROUNDS):
-        fastest, hardest = write_best_motion(friction, work), 0.0
-        for place in range(newton.n_carrying):
-            for which in range(3 if newton.modes[place] == STICKS else 1):
-                presses = write_unit_column(friction, place, which, work)
-                presses += inner(work.scratch[0].beside, work.scratch[0].guided, work.run.contacts.n_freedoms)
-                hardest = max(hardest, abs(presses))
-                newton.matrix[place, which] = presses
+        fastest, hardest = write_presses(friction, work)
         if hardest <= AGREE * fastest or not count_closing(friction, SAME * fastest, work):
             break
     for place in range(newton.n_carrying):
         for which in range(3 if newton.modes[place] == STICKS else 1):
             presses = newton.matrix[place, which]
-            write_unit_column(friction, place, which, work)
-            stands_out = abs(presses) > SAME * hardest
-            newton.matrix[place, which] = presses / work.scratch[0].load[0] if stands_out else 0.0
+            size = length(work.run.contacts.rows[newton.contacts[place]].columns[0], work.run.contacts.n_freedoms)
+            newton.matrix[place, which] = presses / size if abs(presses) > SAME * hardest else 0.0
     return hardest > AGREE * fastest
 
 
@@ -261,13 +269,10 @@ def go_with_all(work: DriveWorkspace) -> None:
     """Let the object go on the shortest way with which it goes with its bodies, and into none of them: of contacts
     without a force those carry that would close.
     """
-    scratch, contacts, newton = work.scratch[0], work.run.contacts, work.scratch[0].rest.newton
+    scratch, contacts = work.scratch[0], work.run.contacts
     list_carrying(contacts, 0.0, scratch.rest)
     for _ in range(ROUNDS):
-        fastest = write_best_motion(0.0, work)
-        for place in range(newton.n_carrying):
-            presses = write_unit_column(0.0, place, 0, work)
-            newton.matrix[place, 0] = presses + inner(scratch.beside, scratch.guided, contacts.n_freedoms)
+        fastest, _ = write_presses(0.0, work)
         if not count_closing(0.0, SAME * fastest, work):
             break
     for k in range(contacts.n_freedoms):

@@ -22,6 +22,14 @@ JUMP = 1e-6
 
 
 @kernel
+def keep_greatest(share: float, driving: float, work: DriveWorkspace) -> None:
+    """Keep the drivers' force of a place if it is the greatest so far."""
+    scratch = work.scratch[0]
+    if driving > scratch.greatest:
+        scratch.greatest, scratch.greatest_at = driving, share
+
+
+@kernel
 def write_driven(
     drive: DriveSetting,
     step: int,
@@ -40,8 +48,7 @@ def write_driven(
         run.contacts, position, quaternion, drive.setting.load, share - APART, work.memory, work.drivers
     )
     record.could_jam = note_jams(drive, position, quaternion, share, work)
-    if record.driving > work.scratch[0].greatest:
-        work.scratch[0].greatest, work.scratch[0].greatest_at = record.driving, share
+    keep_greatest(share, record.driving, work)
 
 
 @kernel
@@ -64,8 +71,7 @@ def write_jump(
     row = rows[step]
     row.rule, row.motion, row.note, row.share, row.driving = DRIVEN, NONE, PLAIN, share, after
     row.could_jam = note_jams(drive, position, quaternion, share, work)
-    if after > work.scratch[0].greatest:
-        work.scratch[0].greatest, work.scratch[0].greatest_at = after, share
+    keep_greatest(share, after, work)
     return step + 1
 
 

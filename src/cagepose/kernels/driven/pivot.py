@@ -1,9 +1,8 @@
-"""What the contacts do from an event on: the mode that lasts, found by changing one contact at a time.
+"""What the contacts do from an event on: the mode that lasts, found by changing what some of them do.
 
-A mode is tried for a little of a step. Each guard that is below zero there says which contact does something else: one
-that would pull opens, one that would go in carries, one beyond its cone slips, one that would slip back sticks. This is
-principal pivoting (Murty) on the contacts that are at the edge of what they do; those that carry for good keep doing
-so.
+A mode is tried for a little of a step. Where its forces are beyond what contacts can give, or it has no rest, the
+forces say who gives way first (`forces_jump`). Else guards below zero say who does something else: all that would go in
+carry, then one that would slip back sticks, or one whose features end there opens.
 """
 
 from __future__ import annotations
@@ -83,7 +82,7 @@ def mode_lasts(
 
 @kernel
 def keep_mode(work: DriveWorkspace) -> None:
-    """Keep what the contacts do, and their forces."""
+    """Keep what the contacts do, and their forces; of those that carry, as many as a mode can have."""
     contacts, scratch = work.run.contacts, work.scratch[0]
     scratch.n_kept = 0
     for i in range(contacts.used[0]):
@@ -178,7 +177,9 @@ def carry_closing(drive: DriveSetting, work: DriveWorkspace) -> bool:
 
 @kernel
 def change_one(guard: int, work: DriveWorkspace) -> bool:
-    """Let the contact of a guard do what the guard says; False: it is not of a contact."""
+    """Let the contact of a guard stick whose slip turns back, or open whose features end; False: it is not of one that
+    carries.
+    """
     contacts, scratch = work.run.contacts, work.scratch[0]
     if guard >= first_of_others():
         return False

@@ -16,6 +16,10 @@ from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.touched_before import place_before
 
+WHATEVER_THEY_HOLD = 2.0
+"""A part of a wrench that is more than all of it: no contact is left out because others hold what it does."""
+AT_CORNER = 10.0
+"""In touch tolerances: so near to where a contact has ended, another one may take it over."""
 PARALLEL = 1.0 - 1e-12
 """Cosine: two contacts at one place push the same way."""
 
@@ -67,7 +71,7 @@ def taken_over(contacts: ContactSet, i: int, before: ContactSet, touch_m: float)
             continue
         away = norm(minus(vector_from(row.arm), vector_from(ended.arm)))
         along = dot(vector_from(row.directions[0]), vector_from(ended.directions[0]))
-        if away <= 10.0 * touch_m and along >= PARALLEL and place_before(contacts, ended) < 0:
+        if away <= AT_CORNER * touch_m and along >= PARALLEL and place_before(contacts, ended) < 0:
             return k
     return -1
 
@@ -95,7 +99,7 @@ def begin_at_rest(drive: DriveSetting, work: DriveWorkspace) -> None:
         is_rubbed = is_rubbed or forces[1] != 0.0 or forces[2] != 0.0
     if not is_rubbed and solver.locked.used == 0:
         clear(held, n, 1.0)
-        held.dependent = 2.0  # whatever they hold
+        held.dependent = WHATEVER_THEY_HOLD
         for k in range(n):
             solver.y[k] = 0.0
         share_evenly(contacts, held, solver.y, solver.load_terms, work.run.scratch[0].stiff.sharing)

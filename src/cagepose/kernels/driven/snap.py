@@ -31,6 +31,8 @@ AHEAD = (1e-4, 1e-3, 1e-2)
 """Of a step: how far bodies go on, one after the other, where no mode is found with which the object follows."""
 CARRIES = 1e-9
 """In greatest forces: what carries less is let go."""
+MOVED = 1e-9
+"""In sizes of the scene: an object that is no farther away has not moved."""
 SNAP_STEPS = 1000
 """An object that has not come to rest after so many steps is pushed on."""
 STAYS = 4.0
@@ -46,17 +48,23 @@ def is_inside(drive: DriveSetting, position: Vector, quaternion: Quaternion, wor
 
 
 @kernel
+def softest_twist(frame: Frame, work: DriveWorkspace) -> tuple[Vector, Vector]:
+    """Return (velocity, angular velocity) of the first of the vectors in the scratch."""
+    scratch = work.scratch[0]
+    for k in range(work.run.contacts.n_freedoms):
+        scratch.load[k] = scratch.vectors[k, 0]
+    return twist_of(scratch.load, frame)
+
+
+@kernel
 def opened_pose(
     drive: DriveSetting, position: Vector, quaternion: Quaternion, work: DriveWorkspace
 ) -> tuple[bool, Vector, Quaternion]:
     """Return a pose a little along the first of the vectors in the scratch, to one side or the other, where nothing is
     inside; False: there is none.
     """
-    setting, scratch = drive.setting, work.scratch[0]
-    frame = frame_at(setting.body, quaternion)
-    for k in range(work.run.contacts.n_freedoms):
-        scratch.load[k] = scratch.vectors[k, 0]
-    velocity, spin = twist_of(scratch.load, frame)
+    setting = drive.setting
+    velocity, spin = softest_twist(frame_at(setting.body, quaternion), work)
     speed = norm(velocity) + setting.body.reach_m * norm(spin)
     for side in (1.0, -1.0):
         amount = side * OPENED * setting.size_m / speed
@@ -99,12 +107,10 @@ def snaps(
 
     It is pushed along what has the least stiffness, both ways, at first by nothing, then more and more.
     """
-    setting, run, scratch = drive.setting, work.run, work.scratch[0]
+    setting, run = drive.setting, work.run
     frame = frame_at(setting.body, state.quaternion)
     find_softest(drive, state.position, state.quaternion, frame, work)
-    for k in range(run.contacts.n_freedoms):
-        scratch.load[k] = scratch.vectors[k, 0]
-    velocity, spin = twist_of(scratch.load, frame)
+    velocity, spin = softest_twist(frame, work)
     speed = norm(velocity) + setting.body.reach_m * norm(spin)
     most = min(step_limit, first_step + SNAP_STEPS)
     for push in PUSHES:
@@ -127,7 +133,7 @@ def snaps(
             if verdict == LIMIT and most < step_limit:
                 continue
             away = way_between(state.position, state.quaternion, after.position, after.quaternion, setting.body.reach_m)
-            if away > max(STAYS * push_m, 1e-9 * setting.size_m):
+            if away > max(STAYS * push_m, MOVED * setting.size_m):
                 return verdict, step, after
     place_object(setting.geometry, state.position, state.quaternion, run.placement)
     return RESTS, first_step, state
@@ -167,7 +173,7 @@ def rests_ahead(
             continue
         with_bodies = way_between(state.position, state.quaternion, begin, turned, reach_m)
         away = way_between(begin, turned, after.position, after.quaternion, reach_m)
-        if (verdict == RESTS and may_stay) or away > max(STAYS * with_bodies, 1e-9 * setting.size_m):
+        if (verdict == RESTS and may_stay) or away > max(STAYS * with_bodies, MOVED * setting.size_m):
             return verdict, step, after, share + ahead
     move_bodies(setting.geometry, drive.phase, share, work.memory)
     place_object(setting.geometry, state.position, state.quaternion, run.placement)

@@ -32,13 +32,15 @@ from cagepose.kernels.quasistatic.path import gap_of
 from cagepose.kernels.quasistatic.pushing_out import is_fixed
 
 STILL = 1e-6
-"""In sizes of the scene: so little is always allowed, as contacts are put on their faces."""
+"""In sizes of the scene: so little is always allowed, as contacts are put on their faces, and where forces jump."""
 LEAP = 8.0
 """Times the way that the object, or a body, would go on: a rest that is farther away is another one."""
 NEXT_TO_NOTHING = 1e-12
 """In sizes of the scene, in slips: so far a guard may be below zero."""
 NO_FORCE = 1e-9
 """In greatest forces. Likewise: what a rest leaves of the balance, contacts that carry nothing share."""
+TURNS_BACK = 1e-6
+"""In speeds: a slip that turns back by less still goes on."""
 LITTLE = 1e-5
 """Of a step: so far a mode is tried."""
 BEGINS = 1e-9
@@ -70,13 +72,11 @@ def begin_trial(drive: DriveSetting, share: float, ahead: float, work: DriveWork
         copy_contact(contacts, i, trial, i)
     list_carrying(trial, drive.setting.friction.greatest, rest)
     for place in range(rest.newton.n_carrying):
-        forces, gap = (
-            contacts.states[rest.newton.contacts[place]].forces,
-            contacts.rows[rest.newton.contacts[place]].gap,
-        )
+        i = rest.newton.contacts[place]
+        forces, gap = contacts.states[i].forces, contacts.rows[i].gap
         is_kept = rest.newton.modes[place] == STICKS and abs(gap) <= KEPT_GAP * drive.setting.size_m
         rest.gaps[place] = gap if is_kept else 0.0
-        one, two = slip_of(contacts, rest.newton.contacts[place], way)
+        one, two = slip_of(contacts, i, way)
         resists = math.sqrt(forces[1] ** 2 + forces[2] ** 2)
         begins = rest.newton.modes[place] == SLIPS and math.sqrt(one * one + two * two) <= slow
         rest.slips[place, 0], rest.slips[place, 1] = one * ahead, two * ahead
@@ -259,7 +259,7 @@ def write_guards(
             size = math.sqrt(rest.slips[place, 0] ** 2 + rest.slips[place, 1] ** 2)
             if rest.newton.modes[place] == SLIPS and size > 0.0:
                 along = (one * rest.slips[place, 0] + two * rest.slips[place, 1]) / size
-                out[OF_CARRYING * place + 2] = along / speed + 1e-6
+                out[OF_CARRYING * place + 2] = along / speed + TURNS_BACK
 
     # Its features reach where they meet.
     for place in range(rest.newton.n_carrying):
