@@ -119,6 +119,7 @@ def _search(last: DrivenContacts, choice: tuple[int, ...], known: DriveContacts)
         contacts.states[flag] = False
         contacts.states[flag][used[list(choice)]] = True
     load = np.zeros(WRENCH + 1) if beside is None else problem.scaled(beside)
+    load /= np.linalg.norm(load) or 1.0
     if search_jam(greatest, problem.load, load, at) != UNIQUE:
         return None
     scratch: Any = at.scratch[0]

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from cagepose.kernels.algebra.least_squares import WRENCH, length
+from cagepose.kernels.algebra.least_squares import WRENCH
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.native.kernel import entry
+from cagepose.kernels.stability.drive_search import search_drive
 from cagepose.kernels.stability.proof import ProofWorkspace
-from cagepose.kernels.stability.relaxation import take_contacts
-from cagepose.kernels.stability.strong import NOT_SHOWN, search_modes
 
 
 @entry
@@ -22,17 +21,10 @@ def search_jam(friction: float, drive: FloatArray, beside: FloatArray, at: Proof
         Coefficient of friction.
     drive, beside
         What pushes the drive, the seventh freedom, and the load, which acts to any extent; zero: there is none,
-        (7,) each, scaled.
+        (7,) each, scaled, the load a unit vector.
     at
         As left by the proof of a rest; the seventh number of each column says how the contact drifts. Filled: the tree.
     """
     contacts, scratch = at.contacts, at.scratch[0]
     driven = ContactSet(contacts.used, contacts.rows, contacts.states, contacts.bends, WRENCH + 1)
-    tree = scratch.tree
-    if not take_contacts(driven, drive, tree.relaxation):
-        return NOT_SHOWN
-    size = length(beside, WRENCH + 1)
-    tree.relaxation.has_beside = size > 0.0
-    for k in range(WRENCH + 1):
-        tree.relaxation.beside[k] = beside[k] / size if size > 0.0 else 0.0
-    return search_modes(driven, friction, drive, False, tree, scratch.solver.newton, at.system)
+    return search_drive(driven, friction, drive, beside, scratch.tree, scratch.solver.newton, at.system)

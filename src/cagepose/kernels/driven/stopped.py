@@ -13,6 +13,7 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.contact.cone import write_forces
 from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.coulomb_newton import SLIDES
 from cagepose.kernels.contact.curvature import add_face_curvature, clear_matrix
 from cagepose.kernels.contact.loads import write_load
 from cagepose.kernels.contact.metric import frame_at
@@ -22,9 +23,9 @@ from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import BLOCKED, JAMS, STALLED
 from cagepose.kernels.quasistatic.step import stand_at
+from cagepose.kernels.stability.drive_search import search_drive
 from cagepose.kernels.stability.jam import cannot_jam
-from cagepose.kernels.stability.relaxation import take_contacts
-from cagepose.kernels.stability.strong import UNIQUE, search_modes
+from cagepose.kernels.stability.strong import UNIQUE
 
 OPENS = -2
 """Instead of the code of a verdict: normal forces resist the drive, but a motion opens them to second order."""
@@ -58,7 +59,7 @@ def opens_to_second_order(drive: DriveSetting, quaternion: Quaternion, work: Dri
         if turned.states[i].forces[0] > 0.0:
             add_face_curvature(turned, i, turned.states[i].forces[0], frame, False, scratch.rest.curvature)
             place = scratch.rest.newton.n_carrying
-            scratch.rest.newton.contacts[place], scratch.rest.newton.modes[place] = i, 3
+            scratch.rest.newton.contacts[place], scratch.rest.newton.modes[place] = i, SLIDES
             scratch.rest.newton.n_carrying = place + 1
     hold_carried(turned, work)
     return least_stiffness(drive, turned, scratch.rest.curvature, work) < STABLE
@@ -78,16 +79,11 @@ def is_jammed(drive: DriveSetting, position: Vector, quaternion: Quaternion, wor
         for j in range(3):
             row.columns[j, n], row.drift[j] = row.drift[j] / fastest, 0.0
     driven = ContactSet(turned.used, turned.rows, turned.states, turned.bends, n + 1)
-    for k in range(n):
-        scratch.beside[k] = 0.0
-    scratch.beside[n] = 1.0
-    if not take_contacts(driven, scratch.beside, tree.relaxation):
-        return False
     frame = frame_at(drive.setting.body, quaternion)
     terms = write_load(drive.setting.load, position, quaternion, frame, scratch.load)
-    tree.relaxation.has_beside = terms > 0.0
     for k in range(n):
-        tree.relaxation.beside[k] = scratch.load[k] / terms if terms > 0.0 else 0.0
-    tree.relaxation.beside[n] = 0.0
+        scratch.beside[k] = 0.0
+        scratch.load[k] = scratch.load[k] / terms if terms > 0.0 else 0.0
+    scratch.beside[n], scratch.load[n] = 1.0, 0.0
     newton = work.run.scratch[0].solver.newton
-    return search_modes(driven, friction, scratch.beside, False, tree, newton, at.system) == UNIQUE
+    return search_drive(driven, friction, scratch.beside, scratch.load, tree, newton, at.system) == UNIQUE
