@@ -23,12 +23,11 @@ from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.driven.jam_proof import search_jam
 from cagepose.kernels.driven.run import repeat_quasistatic, run_quasistatic, run_quasistatic_cases
 from cagepose.kernels.driven.workspace import empty_drive_workspace
-from cagepose.kernels.outcome.at_pose import critical_friction, judge_start
+from cagepose.kernels.outcome.at_pose import critical_friction, find_touching, judge_start
 from cagepose.kernels.outcome.cases import Cases, Part
 from cagepose.kernels.outcome.drives import Drives, Leg
 from cagepose.kernels.outcome.endings import empty_endings
 from cagepose.kernels.outcome.records import empty_outcome
-from cagepose.kernels.outcome.touching_at import find_touching
 from cagepose.kernels.play.certificate import certify, empty_certificate_workspace
 from cagepose.kernels.play.clearances import LimitingGap, find_limiting_gaps
 from cagepose.kernels.play.escape import Station, grow_tree

@@ -1,5 +1,6 @@
 // The force of a drive over its way, with a mark at the present time.
 
+import { blankChart } from "./chart.js";
 import { digits } from "./words.js";
 
 const COLOR = "#d55e00", LEFT = 56, RIGHT = 8, ABOVE = 8, BELOW = 18; // pixels around the curve
@@ -29,12 +30,7 @@ export class ForceCurve {
     Object.assign(this, { data, phase, drive: data.phases[phase].drive });
     const { drive } = this;
     if (!drive) return;
-    const scale = window.devicePixelRatio;
-    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
-    [this.canvas.width, this.canvas.height] = [width * scale, height * scale];
-    const pen = this.canvas.getContext("2d");
-    pen.scale(scale, scale);
-    pen.font = "11px system-ui, sans-serif";
+    const { pen, width, height } = blankChart(this.canvas);
     const noise = NOISE * data.greatestForce;
     const curve = drive.curve.map(([share, along]) => [share, Math.abs(along) < noise ? 0 : along]);
     const forces = [0, ...curve.map(([, along]) => along)];

@@ -1,5 +1,6 @@
 // Yaw, pitch and roll along the film, with a line at each event's end and one at the present time.
 
+import { blankChart } from "./chart.js";
 import { digits } from "./words.js";
 
 const CURVES = [["yaw", "#0072b2", []], ["pitch", "#d55e00", [6, 3]], ["roll", "#009e73", [2, 2]]];
@@ -29,12 +30,7 @@ export class Plot {
   }
 
   draw(time) {
-    const scale = window.devicePixelRatio;
-    const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
-    [this.canvas.width, this.canvas.height] = [width * scale, height * scale];
-    const pen = this.canvas.getContext("2d");
-    pen.scale(scale, scale);
-    pen.font = "11px system-ui, sans-serif";
+    const { pen, width, height } = blankChart(this.canvas);
     const n = Math.max(1, this.data.shots.length - 1);
     const x = (shot) => LEFT + (width - LEFT - RIGHT) * shot / n;
     const y = (angle) => 16 + (height - 22) * (this.high - angle) / (this.high - this.low);

@@ -17,7 +17,7 @@ from cagepose.kernels.boundary.geometry import empty_cage
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.kernels.contact.loads import SPRING
 from cagepose.kernels.driven.bodies import BEFORE_LEG_ENDS
-from cagepose.kernels.outcome.touching_at import find_touching
+from cagepose.kernels.outcome.at_pose import find_touching
 from cagepose.kernels.stability.proof import empty_proof_workspace
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose

@@ -48,3 +48,24 @@ def critical_friction(phase: int, part: Part, cases: Cases, cage: PlacedCage, at
     if not stand_at(start.geometry, part.body, start.position, start.quaternion, load, start.friction, at):
         return math.nan
     return least_friction_of_faces(frame_at(part.body, start.quaternion), at)
+
+
+@entry
+def find_touching(phase: int, part: Part, cases: Cases, cage: PlacedCage, at: ProofWorkspace) -> bool:
+    """Find the contacts at the start pose of the first case, and the load of a phase there; False: there are too many.
+
+    Parameters
+    ----------
+    phase
+        Index of the load.
+    part, cases
+        The scene.
+    cage
+        Scratch.
+    at
+        Filled: contacts and load.
+    """
+    start = start_of(0, part, cases, cage)
+    return stand_at(
+        start.geometry, part.body, start.position, start.quaternion, start.actions[phase], start.friction, at
+    )
