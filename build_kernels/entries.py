@@ -23,9 +23,9 @@ from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.driven.jam_proof import search_jam
 from cagepose.kernels.driven.run import repeat_quasistatic, run_quasistatic, run_quasistatic_cases
 from cagepose.kernels.driven.workspace import empty_drive_workspace
-from cagepose.kernels.outcome.at_pose import critical_friction, find_touching, judge_start
+from cagepose.kernels.outcome.at_pose import critical_friction, find_touching, is_balanced_at_start, judge_start
 from cagepose.kernels.outcome.cases import Cases, Part
-from cagepose.kernels.outcome.drives import Drives, Leg
+from cagepose.kernels.outcome.drives import Drives, Leg, Press
 from cagepose.kernels.outcome.endings import empty_endings
 from cagepose.kernels.outcome.records import empty_outcome
 from cagepose.kernels.play.certificate import certify, empty_certificate_workspace
@@ -80,7 +80,8 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     part = Part(none, vectors, vectors, np.zeros((1, 3, 3)), 1, empty_record(Body), ORIGIN)
     actions = np.zeros((1, 1, 1), dtype_of(Action))
     points = np.zeros((1, 1, 3))
-    drives = Drives(np.zeros((1, 1, 1), dtype_of(Leg)), np.zeros((1, 1), np.int64), numbers)
+    presses = np.zeros((1, 1), dtype_of(Press))
+    drives = Drives(np.zeros((1, 1, 1), dtype_of(Leg)), np.zeros((1, 1), np.int64), numbers, presses)
     cases = Cases(
         vectors,
         quaternions,
@@ -106,6 +107,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield balance_with_faces, (0.0, proof)
     yield search_with_faces, (0.0, proof)
     yield find_touching, (0, part, cases, cage, proof)
+    yield is_balanced_at_start, (0, part, cases, cage, proof)
     yield search_jam, (0.0, numbers, numbers, proof)
 
     rules, work = QuasistaticRules(0.0, 1), empty_drive_workspace(geometry, 1, 1, 1, 1)

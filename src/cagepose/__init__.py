@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from cagepose.model.load import Moment as Moment
     from cagepose.model.parts import Object as Object
     from cagepose.model.pose import Pose as Pose
+    from cagepose.model.press import Press as Press
     from cagepose.model.scene import Adjustable as Adjustable
     from cagepose.model.scene import Scene as Scene
     from cagepose.model.shapes import Capsule as Capsule
@@ -93,6 +94,7 @@ if TYPE_CHECKING:
     from cagepose.studies.mode_tree import ModeTree as ModeTree
     from cagepose.studies.play import play as play
     from cagepose.studies.play_result import Play as Play
+    from cagepose.studies.press_limits import press_limits as press_limits
     from cagepose.studies.touched_faces import ContactFace as ContactFace
 
     __version__: str
@@ -117,6 +119,7 @@ _HOMES = {
     "cagepose.model.load": ("Force", "Load", "Moment"),
     "cagepose.model.parts": ("Object",),
     "cagepose.model.pose": ("Pose",),
+    "cagepose.model.press": ("Press",),
     "cagepose.model.scene": ("Adjustable", "Scene"),
     "cagepose.model.facets": ("Facets",),
     "cagepose.model.shapes": ("Capsule", "Cone", "Convex", "Cylinder", "Disc", "Shape", "Sphere"),
@@ -145,6 +148,7 @@ _HOMES = {
     "cagepose.studies.mode_tree": ("ModeTree",),
     "cagepose.studies.play": ("play",),
     "cagepose.studies.play_result": ("Play",),
+    "cagepose.studies.press_limits": ("press_limits",),
     "cagepose.studies.touched_faces": ("ContactFace",),
     "cagepose.files.run_file": ("load_certificates", "load_run", "save_run"),
     "cagepose.files.saved_scene": ("save_scene",),
@@ -201,6 +205,7 @@ __all__ = [
     "PhaseRun",
     "Play",
     "Pose",
+    "Press",
     "Problem",
     "Proof",
     "Run",
@@ -229,6 +234,7 @@ __all__ = [
     "load_scene",
     "margin",
     "play",
+    "press_limits",
     "run",
     "run_many",
     "save_run",

@@ -107,7 +107,7 @@ EDITS = [
     ("force point missing", GRAVITY, GRAVITY + PUSH.replace(", at: [0, 0, 0]", ""),
      "17:12: loads[1].force.at: is missing; add it, for example at: [0, 0, 0]"),
     ("neither gravity nor force", GRAVITY, "",
-     "14:5: loads[0]: has neither gravity nor a force, a moment, a spring or a drive; give at least one of them"),
+     "14:5: loads[0]: has no gravity, force, moment, spring, drive or press; give at least one of them"),
     ("unknown method", "name: sample", "name: sample\nmethod: magic", "2:9: method: is 'magic';"
      " use one of: stepwise, quasistatic"),
     ("unknown unit", "name: sample", "name: sample\nunits: {length: ft}",

@@ -93,14 +93,14 @@ def test_a_run_that_an_earlier_version_saved_is_read_without_loss(path: Path) ->
         assert [phase["proof"].pop(key) for key in ("gap_work", "largest_force")] == [None, None]  # they are newer
         for key in ("place_m", "group"):
             assert [contact.pop(key) for contact in phase["contacts"]] == [None] * len(phase["contacts"])
-        assert phase.pop("drive") is None
+        assert (phase.pop("drive"), phase.pop("press")) == (None, None)
         assert {event.pop("share") for event in phase["events"]} == {0.0}
     assert record["scene"].pop("friction_of") == {}  # so are these
     for key in ("shapes", "holes", "cage_shapes", "cage_holes", "cage_bodies"):
         assert record["scene"].pop(key) == []
     for load in record["scene"]["loads"]:
         assert [load.pop(key) for key in ("forces", "moments", "springs")] == [[], [], []]
-        assert (load.pop("drive"), load.pop("stop_at")) == ({}, None)
+        assert (load.pop("drive"), load.pop("stop_at"), load.pop("press")) == ({}, None, {})
         assert load["force"] is None or load["force"].pop("follows") is False
     assert record == json.loads(path.read_text(encoding="utf-8"))["exact"]
 

@@ -22,7 +22,7 @@ def scene(load: Load, mass_kg: float | None = None) -> Scene:
 
 
 WRONG: dict[str, tuple[Callable[[], object], str]] = {
-    "nothing acts": (lambda: Load("none"), "has neither gravity nor a force, a moment, a spring or a drive"),
+    "nothing acts": (lambda: Load("none"), "has no gravity, force, moment, spring, drive or press"),
     "force beside forces": (lambda: Load("two", force=push, forces=[push]), "forces: stands beside force"),
     "a list in the place of a force": (
         lambda: Load("two", force=[push]),

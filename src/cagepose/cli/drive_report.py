@@ -1,4 +1,4 @@
-"""What came of the drives of a run as lines of its report: how far, with which force, and which work."""
+"""What came of the drives of a run, and of what presses, as lines of its report: how far, with which force and work."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from cagepose.files.words import LengthWords
 from cagepose.model.load import Load
 from cagepose.model.wording import short
 from cagepose.runs.actions import load_size
-from cagepose.runs.driven import DriveRun
+from cagepose.runs.driven import BodyRun, DriveRun
 from cagepose.runs.drives import displaced_after, turns_alone
 from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.run import FAILURES, STOPPED, PhaseRun, Run
@@ -26,9 +26,22 @@ anew within the touch tolerance, and that looks like work.
 
 
 def drive_lines(run: Run, words: LengthWords) -> list[tuple[str, str]]:
-    """Return the lines of all phases that drive bodies of the cage."""
+    """Return the lines of all phases that drive bodies of the cage, or let them press."""
     driven = [place for place, load in enumerate(run.scene.loads[: len(run.phases)]) if load.drive]
-    return [line for place in driven for line in lines_of_phase(run, place, words, is_alone=len(driven) == 1)]
+    lines = [line for place in driven for line in lines_of_phase(run, place, words, is_alone=len(driven) == 1)]
+    presses = [(phase.name, phase.press) for phase in run.phases if phase.press is not None]
+    for name, press in presses:
+        of_phase = "" if len(presses) == 1 else f" of {name}"
+        lines += [(f"press{of_phase}", "; ".join(_pressed(*body, words) for body in press.bodies.items()))]
+    return lines
+
+
+def _pressed(name: str, body: BodyRun, words: LengthWords) -> str:
+    """Return ``pad went on by 3.5 mm and presses with 12 N``; what is not at rest does not press."""
+    way = words.lengths([abs(body.travel_m)])
+    went = "gave way by" if body.travel_m < 0.0 else "went on by"
+    told = f"{name} stays where it is" if way == "0" else f"{name} {went} {way} {words.unit}"
+    return f"{told} and presses with {short(body.along, 6, 1e-12)} N" if body.force_n.any() else told
 
 
 def lines_of_phase(run: Run, place: int, words: LengthWords, *, is_alone: bool) -> Iterator[tuple[str, str]]:

@@ -98,11 +98,13 @@ def _what(row: Change) -> Text:
 
 
 def _driven(run: Run) -> dict[str, Load]:
-    """Return the loads that drive bodies, by the names of their phases."""
-    return {load.name: load for load in run.scene.loads if load.drive}
+    """Return the loads that drive bodies, or let them press, by the names of their phases."""
+    return {load.name: load for load in run.scene.loads if load.drive or load.press}
 
 
 def _depth(row: Change, loads: Mapping[str, Load], words: LengthWords) -> str:
-    """Return how far the bodies are driven after an event; empty in a phase that drives none."""
-    load = loads.get(row.phase.name)
+    """Return how far the bodies have got after an event; empty in a phase that moves none."""
+    load, press = loads.get(row.phase.name), row.phase.press
+    if press is not None:
+        return f"{words.lengths(press.ways_at(row.event.share).values())} {words.unit}"
     return "" if load is None else words.depth(load, row.event.share)

@@ -1,4 +1,4 @@
-"""A margin as lines of the table of `cagepose run`."""
+"""A margin, or the limits of what presses, as lines of the table of `cagepose run`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from cagepose.files.units import from_metres
 from cagepose.files.words import LengthWords
 from cagepose.model.checks import FloatArray
 from cagepose.model.wording import components
+from cagepose.runs.run import Run
 from cagepose.studies.margin import ContactMargin, Margin
+from cagepose.studies.press_limits import press_limits
 
 
 def margin_lines(margin: Margin | None, words: LengthWords) -> list[tuple[str, str]]:
@@ -27,6 +29,18 @@ def margin_lines(margin: Margin | None, words: LengthWords) -> list[tuple[str, s
         ("margin of moment", _extra(moment, arm_unit, "about", margin.moment_direction_world)),
         ("equally stiff", ", ".join(carries) or "no contact"),
     ]
+
+
+def press_lines(run: Run) -> list[tuple[str, str]]:
+    """Return names and texts: between which forces what presses in the last phase may press."""
+    limits = press_limits(run)
+    if not limits:
+        return [("may press", "no force is known with which all is in balance")]
+    told = (
+        f"{name} with {least:.6g} N or more" if math.isinf(most) else f"{name} with {least:.6g} to {most:.6g} N"
+        for name, (least, most) in limits.items()
+    )
+    return [("may press", "; ".join(told))]
 
 
 def _extra(certain: float, unit: str, preposition: str, direction: FloatArray) -> str:

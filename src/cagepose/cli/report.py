@@ -13,7 +13,7 @@ from cagepose.cli.console import print_all, screen_width, text_of, text_width
 from cagepose.cli.drive_report import drive_lines
 from cagepose.cli.event_table import event_table, listed
 from cagepose.cli.force_table import force_table
-from cagepose.cli.margin_report import margin_lines
+from cagepose.cli.margin_report import margin_lines, press_lines
 from cagepose.cli.styles import STYLES
 from cagepose.cli.tolerances import LEAST_GAP_WORK
 from cagepose.errors import printable
@@ -68,7 +68,7 @@ def _parts(
 ) -> list[RenderableType]:
     writer = _Writer(run, unit, is_verbose=is_verbose)
     if margins is not None:
-        writer.margin = margin_lines(margins[-1], writer.words)
+        writer.margin = press_lines(run) if run.phases[-1].press else margin_lines(margins[-1], writer.words)
     return [
         writer.title(),
         "",

@@ -1,4 +1,4 @@
-"""The loads of a checked scene file: forces, moments, springs and drives."""
+"""The loads of a checked scene file: forces, moments, springs, drives and presses."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ import math
 
 from cagepose.errors import Key, Problem, SceneError
 from cagepose.files.schema import ForceModel, LoadModel, MomentModel, SpringModel
-from cagepose.files.schema_driven import LegModel, Legs, StopModel
+from cagepose.files.schema_driven import LegModel, Legs, PressModel, StopModel
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.drive import Drive
 from cagepose.model.load import Force, Load, Moment
+from cagepose.model.press import Press
 from cagepose.model.spring import Spring
 
 KEYS_OF_TURN: dict[Key, tuple[Key, ...]] = {
@@ -54,6 +55,7 @@ def load_of(model: LoadModel, unit: LengthUnit) -> Load:
         springs=springs,
         drive=drive,
         stop_at=None if model.stop_at is None else _limit(model.stop_at, unit),
+        press={name: _press(press, unit) for name, press in (model.press or {}).items()},
     )
     if model.stop_at is not None:
         _check_kind_of_limit(model.stop_at, load)
@@ -89,6 +91,13 @@ def _leg(model: LegModel, unit: LengthUnit) -> Drive:
     except SceneError as error:
         places = [(KEYS_OF_TURN.get(problem.path[0], problem.path), problem.message) for problem in error.problems]
         raise SceneError([Problem(path, message) for path, message in places]) from None
+
+
+def _press(model: PressModel, unit: LengthUnit) -> Press:
+    if model.spring is None:
+        assert model.force is not None  # the schema asks for one of the two
+        return Press(model.along, model.force)
+    return Press(model.along, model.spring.preload, model.spring.stiffness / float(to_metres(1.0, unit)))
 
 
 def _limit(model: StopModel, unit: LengthUnit) -> float | None:

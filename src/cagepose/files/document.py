@@ -18,6 +18,7 @@ from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.proof import FreeMotion, Proof
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
 from cagepose.studies.margin import Margin
+from cagepose.studies.press_limits import press_limits
 
 FORMAT_VERSION = 2
 """Version of the document and of saved runs. It counts up when a reader of the old form would misread the new one."""
@@ -28,12 +29,15 @@ def run_document(
 ) -> dict[str, Any]:
     """Return the document: only dict, list, str, int, finite float, bool and None.
 
-    ``margins``, one for each phase, stand in the proofs; None: there is no such key.
+    ``margins``, one for each phase, stand in the proofs, and between which forces bodies may press beside these; None:
+    there are no such keys.
     """
     writer = _Writer(run.scene, length_unit)
     phases = [writer.phase(phase, load) for phase, load in zip(run.phases, run.scene.loads, strict=False)]
-    for phase, margin in zip(phases, margins or (), strict=False):
+    for number, (phase, margin) in enumerate(zip(phases, margins or (), strict=False)):
         phase["proof"]["margin"] = None if margin is None else margin_document(margin, length_unit)
+        for name, (least, greatest) in press_limits(run, number).items():
+            phase["press"][name] |= {"least": least, "greatest": "unbounded" if math.isinf(greatest) else greatest}
     return {
         "version": FORMAT_VERSION,
         "scene": run.scene.name,
@@ -78,7 +82,7 @@ class _Writer:
 
     def phase(self, phase: PhaseRun, load: Load) -> dict[str, Any]:
         events = [self._event(event) for event in phase.events]
-        if load.drive:
+        if load.drive or load.press:
             events = [shown | {"share": event.share} for shown, event in zip(events, phase.events, strict=True)]
         found: dict[str, Any] = {
             "name": phase.name,
@@ -91,6 +95,8 @@ class _Writer:
         }
         if load.drive:
             found["drive"] = None if phase.drive is None else self.drive(phase.drive, load)
+        if phase.press is not None:
+            found["press"] = {name: self._pressing(body) for name, body in phase.press.bodies.items()}
         return found
 
     def drive(self, drive: DriveRun, load: Load) -> dict[str, Any]:
@@ -121,6 +127,14 @@ class _Writer:
             "force": _numbers(body.force_n),
             "moment": self._lengths(body.moment_nm),
             "along": self._along(body.along, load, share),
+        }
+
+    def _pressing(self, body: BodyRun) -> dict[str, Any]:
+        return {
+            "travel": self._length(body.travel_m),
+            "along": _plain(body.along),
+            "force": _numbers(body.force_n),
+            "moment": self._lengths(body.moment_nm),
         }
 
     def _along(self, along: float, load: Load, share: float) -> float:

@@ -25,6 +25,7 @@ from cagepose.model.hole import Hole
 from cagepose.model.load import Force, Load, Moment
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
+from cagepose.model.press import Press
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Convex, Shape
 from cagepose.model.spring import Spring
@@ -207,6 +208,7 @@ class SceneWriter:
                 "springs": [self.spring(spring) for spring in load.springs] or None,
                 "drive": {name: self.legs(legs) for name, legs in load.drive.items()} or None,
                 "stop_at": self.limit(load),
+                "press": {name: self.press(press) for name, press in load.press.items()} or None,
             }
         )
 
@@ -227,6 +229,13 @@ class SceneWriter:
             "preload": _plain(spring.preload_n),
             **_given({"of": spring.of}),
         }
+
+    def press(self, press: Press) -> dict[str, Any]:
+        wanted, along = press.stiffness_n_per_m, _plain_list(press.along_cage)
+        if wanted == 0.0:
+            return {"along": along, "force": _plain(press.force_n)}
+        stiffness = _shortest(wanted * self.metres, wanted, lambda shown: shown / self.metres)
+        return {"along": along, "spring": {"stiffness": stiffness, "preload": _plain(press.force_n)}}
 
     def legs(self, legs: Sequence[Drive]) -> dict[str, Any] | list[dict[str, Any]]:
         found = [self.leg(leg) for leg in legs]

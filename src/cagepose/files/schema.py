@@ -30,7 +30,7 @@ from cagepose.files.schema_base import (
     wrong,
 )
 from cagepose.files.schema_cage import POINTS, CageModel
-from cagepose.files.schema_driven import Drives, StopModel
+from cagepose.files.schema_driven import Drives, Presses, StopModel
 from cagepose.files.schema_shapes import CoefficientModel, Shapes, either
 from cagepose.files.units import LengthUnit
 from cagepose.model.methods import DEFAULT_METHOD, DEFAULT_METRIC, METHODS, NO_SLIP_ANGLE_DEFAULT_RAD, Metric
@@ -185,6 +185,12 @@ class LoadModel(Mapping):
     )
     stop_at: StopModel | None = Field(
         None, description="At which force or moment the drive stops; left out: at none.", examples=[{"force": 200}]
+    )
+    press: Presses | None = Field(
+        None,
+        description="BODY: how it presses (quasistatic): with a force or a spring, along a direction. It goes on, or"
+        " gives way, until all is at rest. Not beside drive.",
+        examples=[{"pad": {"force": 12, "along": [1, 0, 0]}}],
     )
 
 

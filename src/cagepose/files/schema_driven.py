@@ -1,4 +1,4 @@
-"""Drives of bodies in a scene file: legs of travels and turns, and the limit at which they stop."""
+"""Drives of bodies in a scene file, legs of travels and turns and the limit at which they stop; and what presses."""
 
 from __future__ import annotations
 
@@ -57,6 +57,42 @@ Legs = Annotated[
 ]
 
 Drives = Annotated[dict[Name, Legs], Field(min_length=1)]
+
+
+class PressSpringModel(Mapping):
+    """A spring that presses."""
+
+    stiffness: Positive = Field(
+        description="Newtons for each unit of length of the file (N/mm with mm).", examples=[0.5]
+    )
+    preload: Number = Field(
+        description="How hard it presses where the body stands in the scene, newtons.", examples=[8]
+    )
+
+
+class PressModel(Mapping):
+    """What pushes a body along a direction, the only one in which it can move: a force, or a spring."""
+
+    model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": [key]} for key in ("force", "spring")]})
+
+    along: Direction = Field(
+        description="In which it is pushed, in the cage's frame, any length.", examples=[[1, 0, 0]]
+    )
+    force: Positive | None = Field(None, description="How hard, newtons.", examples=[12])
+    spring: PressSpringModel | None = Field(
+        None, description="Instead of force: a spring.", examples=[{"stiffness": 0.5, "preload": 8}]
+    )
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> PressModel:
+        if self.force is None and self.spring is None:
+            raise wrong("has neither force nor spring; give one of them")
+        if self.force is not None and self.spring is not None:
+            raise wrong("has both force and spring; give one of them")
+        return self
+
+
+Presses = Annotated[dict[Name, PressModel], Field(min_length=1)]
 
 
 class StopModel(Mapping):

@@ -1,4 +1,4 @@
-"""Whether what loads drive, and what springs ride on, is in the cage."""
+"""Whether what loads drive, what presses, and what springs ride on, is in the cage."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from cagepose.model.wording import few
 
 
 def check_driven(cage: Cage, loads: Sequence[Load], problems: ProblemList) -> None:
-    """Note each drive and each spring of a body that the cage does not have."""
+    """Note each drive, press and spring of a body that the cage does not have."""
     names = [body.name for body in cage.bodies]
     for index, load in enumerate(loads):
-        for name in load.drive:
-            if name not in names:
-                problems.add(("loads", index, "drive", name), f"is no body of the cage; {_meant(name, cage)}")
+        for key, bodies in (("drive", load.drive), ("press", load.press)):
+            for name in bodies:
+                if name not in names:
+                    problems.add(("loads", index, key, name), f"is no body of the cage; {_meant(name, cage)}")
         for number, spring in enumerate(load.springs):
             if spring.of is not None and spring.of not in names:
                 found = f"is {spring.of!r}, no body of the cage; {_meant(spring.of, cage)}"

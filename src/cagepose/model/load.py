@@ -1,4 +1,4 @@
-"""What acts in a phase: `Force`, `Moment` and `Load`; springs and drives stand beside it."""
+"""What acts in a phase: `Force`, `Moment` and `Load`; springs, drives and presses stand beside it."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from cagepose.model.checks import (
     unit_vector,
 )
 from cagepose.model.drive import Drive, drives_of
+from cagepose.model.press import Press, presses_of
 from cagepose.model.spring import Spring
 from cagepose.model.wording import coordinates, counted, few
 
@@ -100,8 +101,8 @@ class Moment:
 
 @dataclass(frozen=True, init=False, eq=False)
 class Load:
-    """One phase of a run: gravity, forces, moments, springs, and bodies of the cage that are driven, at least one of
-    these. A phase without gravity has none.
+    """One phase of a run: gravity, forces, moments, springs, and bodies of the cage that are driven or that press, at
+    least one of these. A phase without gravity has none.
 
     Attributes
     ----------
@@ -121,6 +122,8 @@ class Load:
     stop_at
         At which force of the drive, newtons along the travel, or moment, newton metres about the axis where all legs
         are turns alone, it stops. None: it has no limit.
+    press
+        How bodies press, by their names; empty: none does. They go on, or give way, until all is at rest.
     pushes
         All forces, whether one or several.
     """
@@ -133,6 +136,7 @@ class Load:
     springs: tuple[Spring, ...]
     drive: dict[str, tuple[Drive, ...]]
     stop_at: float | None
+    press: dict[str, Press]
     pushes: tuple[Force, ...]
 
     def __init__(
@@ -146,14 +150,15 @@ class Load:
         springs: Iterable[Spring] = (),
         drive: Mapping[str, Drive | Sequence[Drive]] | None = None,
         stop_at: float | None = None,
+        press: Mapping[str, Press] | None = None,
     ) -> None:
         """
         Raises
         ------
         SceneError
             Nothing that acts, a zero gravity, both ``force`` and ``forces``, arguments of other classes, a force
-            without a magnitude beside other forces, moments, springs or a limit, a body without legs, or a limit that
-            is not above zero, without a drive, or of travels and turns at once.
+            without a magnitude beside other forces, moments, springs, a limit or a press, a body without legs, a limit
+            that is not above zero, without a drive, or of travels and turns at once, or a press beside a drive.
         """
         problems = ProblemList()
         check_text(name, ("name",), problems)
@@ -166,13 +171,15 @@ class Load:
         _set_field(self, "springs", check_kinds(springs, Spring, "springs", problems))
         _set_field(self, "drive", drives_of(drive, problems))
         _set_field(self, "stop_at", stop_at)
+        _set_field(self, "press", presses_of(press, problems))
         _set_field(self, "pushes", self.forces if force is None else (force,))
         if force is not None and self.forces:
             problems.add(("forces",), "stands beside force; put all of them into forces")
         problems.raise_if_any()
         self._check_limit(problems)
+        self._check_press(problems)
         if gravity is None and self.is_weight_alone:
-            nothing = "has neither gravity nor a force, a moment, a spring or a drive; give at least one of them"
+            nothing = "has no gravity, force, moment, spring, drive or press; give at least one of them"
             raise SceneError([*problems.problems, Problem((), nothing)])
         if gravity is not None:
             unit_vector(gravity, "gravity")
@@ -181,6 +188,7 @@ class Load:
                 place = ("force",) if force is not None else ("forces", index)
                 is_alone = len(self.pushes) == 1 and not self.moments and not self.springs
                 beside = "the drive has a limit" if is_alone else "other loads act beside this force"
+                beside = "bodies press beside this force" if is_alone and self.press else beside
                 problems.add((*place, "magnitude"), f"is missing, and {beside}; give newtons")
         problems.raise_if_any()
         _set_field(self, "gravity_world", None if gravity is None else finite_array(gravity, (3,), "gravity"))
@@ -193,7 +201,8 @@ class Load:
             (len(self.springs), "spring", "springs"),
         )
         driven = f"drives {few(self.drive)}" if self.drive else ""
-        return f"<Load {self.name!r}: {', '.join(part for part in (gravity, counts, driven) if part)}>"
+        pressed = f"presses {few(self.press)}" if self.press else ""
+        return f"<Load {self.name!r}: {', '.join(part for part in (gravity, counts, driven, pressed) if part)}>"
 
     def _check_limit(self, problems: ProblemList) -> None:
         if self.stop_at is None:
@@ -208,10 +217,19 @@ class Load:
         else:
             _set_field(self, "stop_at", float(self.stop_at))
 
+    def _check_press(self, problems: ProblemList) -> None:
+        for name in self.press:
+            if name in self.drive:
+                message = "is driven in this phase, too, and a body follows its way or its force; give it one of them"
+                problems.add(("press", name), message)
+        if self.press and self.drive and not set(self.press) & set(self.drive):
+            message = f"stands beside a drive ({few(self.drive)}); give them phases of their own, one after the other"
+            problems.add(("press",), message)
+
     @property
     def is_weight_alone(self) -> bool:
-        """Whether nothing but gravity acts, and nothing is driven."""
-        return not (self.pushes or self.moments or self.springs or self.drive)
+        """Whether nothing but gravity acts, and nothing is driven or presses."""
+        return not (self.pushes or self.moments or self.springs or self.drive or self.press)
 
     @property
     def stops_at_moment(self) -> bool:
@@ -223,7 +241,8 @@ class Load:
         """Whether its parts only make sense together if all of them are in newtons: all but gravity, one force and a
         drive without a limit.
         """
-        return len(self.pushes) > 1 or bool(self.moments) or bool(self.springs) or self.stop_at is not None
+        has_others = bool(self.moments or self.springs or self.press)
+        return len(self.pushes) > 1 or has_others or self.stop_at is not None
 
 
 _set_field = object.__setattr__

@@ -106,8 +106,10 @@ def acting_pushes(load: Load, forces: FloatArray) -> list[Push]:
 
 
 def is_one_force(scene: Scene, load: Load) -> bool:
-    """Whether besides its weight a phase has at most one dead force, or such as one is equal to, and drives nothing."""
-    if load.drive:
+    """Whether besides its weight a phase has at most one dead force, or such as one is equal to, and neither drives nor
+    presses anything.
+    """
+    if load.drive or load.press:
         return False
     if not load.forces and not load.moments and not load.springs:
         return load.force is None or not load.force.follows

@@ -1,4 +1,4 @@
-"""What came of a drive: `DriveRun`, how far it got and which forces it took."""
+"""What came of a drive, `DriveRun`: how far it got and which forces it took; and of what presses, `PressRun`."""
 
 from __future__ import annotations
 
@@ -6,25 +6,28 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
+import numpy as np
+
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 
 
 @dataclass(frozen=True, eq=False)
 class BodyRun:
-    """How far a body of the cage was driven in a phase, and what drives it at the end.
+    """How far a body of the cage was driven, or went as it pressed, in a phase, and what drives it at the end.
 
     Attributes
     ----------
     pose_cage_body
         Where it is at the end, in the cage's frame.
     travel_m, angle_rad
-        How far it got: all its travels, and all its turns.
+        How far it got: all its travels, and all its turns. Of what presses below zero where it gave way.
     force_n, moment_nm
         What the driver does to it, in the world, (3,) each, the moment about the body's origin. Newtons, or unit loads
         as `Contact.force_normal_n`.
     along
-        The work of these for a unit of travel (of a pure turn: for a radian), above zero where the driver pushes.
+        The work of these for a unit of travel (of a pure turn: for a radian), above zero where the driver pushes. Of
+        what presses: with how much force; the rest of ``force_n`` comes from what guides it.
     """
 
     pose_cage_body: Pose
@@ -108,3 +111,29 @@ class DriveRun:
 
     def __repr__(self) -> str:
         return f"<DriveRun: {self.share:.6g} of the way, {self.along:.6g} along, at most {self.greatest_along:.6g}>"
+
+
+@dataclass(frozen=True, eq=False)
+class PressRun:
+    """What the bodies did that press in a phase.
+
+    Attributes
+    ----------
+    bodies
+        By name: where each is at the end, and what pushes it there.
+    share, travels_m
+        How much of all their ways was done at each step, (n,), from 0 to 1, and how far each had gone, (n, n_bodies).
+    """
+
+    bodies: dict[str, BodyRun]
+    share: Annotated[FloatArray, (-1,)]
+    travels_m: Annotated[FloatArray, (-1, -1)]
+
+    def __repr__(self) -> str:
+        ways = ", ".join(f"{name} {body.travel_m:.6g} m, {body.along:.6g}" for name, body in self.bodies.items())
+        return f"<PressRun: {ways}>"
+
+    def ways_at(self, share: float) -> dict[str, float]:
+        """Return how far each body has gone, metres, after a share of all their ways."""
+        ways = [float(np.interp(share, [0.0, *self.share], [0.0, *travels])) for travels in self.travels_m.T]
+        return dict(zip(self.bodies, ways, strict=True))

@@ -10,7 +10,7 @@ import numpy as np
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
-from cagepose.runs.drives import displaced_bodies
+from cagepose.runs.drives import displaced_bodies, way_in
 from cagepose.runs.run import Run
 
 
@@ -60,8 +60,10 @@ def cage_at_start(cage: Cage) -> CageAt:
 def cage_at(run: Run, phase_index: int, share: float) -> CageAt:
     """Return the cage in a phase of a run in which so much of its drive is done, see `Frame`."""
     scene = run.scene
-    shares = [phase.drive.share if phase.drive else 0.0 for phase in run.phases[:phase_index]]
-    in_cage = displaced_bodies(scene, [*shares, share] if share else shares)  # where a phase starts the last one ended
+    ways = [way_in(phase) for phase in run.phases[:phase_index]]
+    if share:  # else it is where the phase before ended
+        ways.append(way_in(run.phases[phase_index], share))
+    in_cage = displaced_bodies(scene, ways)
     to_world = scene.cage.pose_world_cage
     to_cage = to_world.inverse()
     of_bodies = (to_world @ in_cage[body.name] @ to_cage for body in scene.cage.bodies)
@@ -71,5 +73,6 @@ def cage_at(run: Run, phase_index: int, share: float) -> CageAt:
 def cage_at_end(run: Run, phase_index: int = -1) -> CageAt:
     """Return the cage at the end of a phase; left out: of the run."""
     index = phase_index % len(run.phases)
-    drive = run.phases[index].drive
-    return cage_at(run, index, drive.share if drive else 0.0)
+    phase = run.phases[index]
+    share = 0.0 if phase.drive is None else phase.drive.share
+    return cage_at(run, index, share if phase.press is None else 1.0)

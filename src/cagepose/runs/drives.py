@@ -1,4 +1,4 @@
-"""How the bodies of a cage are driven, as kernels take it."""
+"""How the bodies of a cage are driven, and how they press, as kernels take it."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from typing import cast
 
 import numpy as np
 
+from cagepose.kernels.algebra.least_squares import WRENCH
 from cagepose.kernels.algebra.record import Rows, dtype_of
 from cagepose.kernels.driven.bodies import BEFORE_LEG_ENDS
-from cagepose.kernels.outcome.drives import Drives, Leg
+from cagepose.kernels.outcome.drives import Drives, Leg, Press
 from cagepose.model.checks import FloatArray
 from cagepose.model.drive import Drive
 from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.runs.run import Run
+from cagepose.runs.run import PhaseRun, Run
 
 
 def drives_of(scene: Scene, moved: Mapping[str, Pose] | None = None) -> Drives:
@@ -42,14 +43,29 @@ def drives_of(scene: Scene, moved: Mapping[str, Pose] | None = None) -> Drives:
                 through = np.zeros(3) if drive.through_cage_m is None else drive.through_cage_m
                 leg["velocity"], leg["spin"] = travel - np.cross(spin, through), spin
                 leg["length"] = np.linalg.norm(travel) or np.linalg.norm(spin)
-    return Drives(cast(Rows[Rows[Rows[Leg]]], legs), n_legs, stop_at)
+    return Drives(cast(Rows[Rows[Rows[Leg]]], legs), n_legs, stop_at, _presses_of(scene))
+
+
+def _presses_of(scene: Scene) -> Rows[Rows[Press]]:
+    """Return how bodies press in all phases, (n_phases, n_bodies)."""
+    found = np.zeros((len(scene.loads), 1 + len(scene.cage.bodies)), dtype_of(Press))
+    for phase, load in enumerate(scene.loads):
+        for body, of_body in enumerate(scene.cage.bodies, start=1):
+            press = load.press.get(of_body.name)
+            if press is not None:
+                one = found[phase, body : body + 1]
+                one["freedom"] = WRENCH + list(load.press).index(of_body.name)
+                one["direction"], one["origin"] = press.along_cage, of_body.pose_cage_body.position_m
+                one["force"], one["stiffness"] = press.force_n, press.stiffness_n_per_m
+    return cast(Rows[Rows[Press]], found)
 
 
 def no_drives(scene: Scene) -> Drives:
     """Return the drives of one phase in which all bodies of the cage stand still."""
     n_bodies = 1 + len(scene.cage.bodies)
     legs = np.zeros((1, n_bodies, 1), dtype_of(Leg))
-    return Drives(cast(Rows[Rows[Rows[Leg]]], legs), np.zeros((1, n_bodies), np.int64), np.array([np.inf]))
+    no_press = cast(Rows[Rows[Press]], np.zeros((1, n_bodies), dtype_of(Press)))
+    return Drives(cast(Rows[Rows[Rows[Leg]]], legs), np.zeros((1, n_bodies), np.int64), np.array([np.inf]), no_press)
 
 
 def way_of(drives: Sequence[Drive], share: float) -> tuple[float, float]:
@@ -82,22 +98,39 @@ def displaced_by(drives: Sequence[Drive], share: float) -> Pose:
     return found
 
 
-def displaced_bodies(scene: Scene, shares: Sequence[float]) -> dict[str, Pose]:
+PhaseWay = float | Mapping[str, float]
+"""How far bodies have got in a phase: the share of its drive, or of each body that presses how far it has gone."""
+
+
+def way_in(phase: PhaseRun, share: float | None = None) -> PhaseWay:
+    """Return how far bodies have got after a share of a phase of a run; left out: at its end."""
+    if phase.press is not None:
+        return phase.press.ways_at(1.0 if share is None else share)
+    if share is not None:
+        return share
+    return 0.0 if phase.drive is None else phase.drive.share
+
+
+def displaced_bodies(scene: Scene, ways: Sequence[PhaseWay]) -> dict[str, Pose]:
     """Return how each body of the cage is displaced from its start, in the cage's frame, after the first phases of a
-    scene, with what share of each one's drive is done.
+    scene, in each of which it has got so far.
     """
     found = {body.name: Pose() for body in scene.cage.bodies}
-    for load, share in zip(scene.loads, shares, strict=False):
-        for name, legs in load.drive.items():
-            found[name] = displaced_by(legs, share) @ found[name]
+    for load, way in zip(scene.loads, ways, strict=False):
+        if isinstance(way, Mapping):
+            for name, gone in way.items():
+                found[name] = Pose(gone * load.press[name].along_cage) @ found[name]
+        else:
+            for name, legs in load.drive.items():
+                found[name] = displaced_by(legs, way) @ found[name]
     return found
 
 
-def displaced_at(scene: Scene, shares: Sequence[float]) -> FloatArray:
+def displaced_at(scene: Scene, ways: Sequence[PhaseWay]) -> FloatArray:
     """Return how the bodies of a cage are displaced after the first phases, as `displaced_bodies`, in the form of
     `at_start`.
     """
-    moved, found = displaced_bodies(scene, shares), at_start(scene)
+    moved, found = displaced_bodies(scene, ways), at_start(scene)
     for row, body in enumerate(scene.cage.bodies, start=1):
         found[row] = *moved[body.name].position_m, *moved[body.name].quaternion_wxyz
     return found
@@ -105,8 +138,18 @@ def displaced_at(scene: Scene, shares: Sequence[float]) -> FloatArray:
 
 def displaced_after(run: Run, phase: int) -> FloatArray:
     """Return how the bodies of a cage are displaced at the end of a phase of a run, counted from 0, as `at_start`."""
-    drives = [ended.drive for ended in run.phases[: phase + 1]]
-    return displaced_at(run.scene, [0.0 if drive is None else drive.share for drive in drives])
+    return displaced_at(run.scene, [way_in(ended) for ended in run.phases[: phase + 1]])
+
+
+def pressing_forces(scene: Scene, phase: int, displaced: FloatArray) -> dict[str, float]:
+    """Return how hard each body presses in a phase where the bodies are displaced, as in `at_start`; newtons."""
+    found, rows = dict[str, float](), {body.name: row for row, body in enumerate(scene.cage.bodies, start=1)}
+    for name, press in scene.loads[phase].press.items():
+        row = rows[name]
+        origin = scene.cage.bodies[row - 1].pose_cage_body.position_m
+        way = Pose(displaced[row, :3], displaced[row, 3:]).transform(origin) - origin
+        found[name] = press.force_n - press.stiffness_n_per_m * float(press.along_cage @ way)
+    return found
 
 
 def points_displaced(scene: Scene, displaced: FloatArray) -> FloatArray:

@@ -92,7 +92,7 @@ def _event(phase: PhaseRun, number: int, event: Event) -> dict[str, object]:
         **dict(zip(ANGLES, pose.euler_zyx, strict=True)),
         "hit": event.hit,
         "contacts": event.contacts,
-        "share": np.nan if phase.drive is None else event.share,
+        "share": np.nan if phase.drive is None and phase.press is None else event.share,
         "verdict": phase.verdict if event is phase.events[-1] else "",
     }
 

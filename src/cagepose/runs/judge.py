@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cagepose.kernels.algebra.least_squares import WRENCH
 from cagepose.kernels.boundary.geometry import PlacedCage, empty_cage
 from cagepose.kernels.outcome import at_pose
 from cagepose.kernels.outcome.records import Outcome, empty_outcome
@@ -47,7 +48,8 @@ def judged_workspace(
     cases = cases_of(scene, friction, pose, displaced)
     outcome.displaced[:] = cases.displaced
     at_pose.judge_start(phase, part_of(scene), cases, cage, at, outcome)
-    return at, outcome
+    n_freedoms = WRENCH + len(scene.loads[phase].press)
+    return at._replace(contacts=at.contacts._replace(n_freedoms=n_freedoms)), outcome
 
 
 def critical_friction_at(

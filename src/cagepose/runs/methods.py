@@ -130,15 +130,16 @@ def chosen_method(scene: Scene, method: str | None = None) -> Method:
                 f" {DEFAULT_METHOD}",
             )
             for index, load in enumerate(scene.loads)
-            if not load.drive and not is_one_force(scene, load)
+            if not (load.drive or load.press) and not is_one_force(scene, load)
         ]
         problems += [
             Problem(
-                ("loads", index, "drive"),
-                f"{load.name!r} drives a body, which only the {DEFAULT_METHOD} method does; use {DEFAULT_METHOD}",
+                ("loads", index, key),
+                f"{load.name!r} {verb} a body, which only the {DEFAULT_METHOD} method does; use {DEFAULT_METHOD}",
             )
             for index, load in enumerate(scene.loads)
-            if load.drive
+            for key, verb in (("drive", "drives"), ("press", "presses"))
+            if getattr(load, key)
         ]
         if scene.friction_of:
             message = f"the {name} method has one friction for all; use {DEFAULT_METHOD}"

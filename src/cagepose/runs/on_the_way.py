@@ -1,4 +1,4 @@
-"""Where on the curve of a drive a moment of a phase is."""
+"""Where on the curve of a drive, or among the steps of what presses, a moment of a phase is."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from cagepose.model.checks import FloatArray
 
 if TYPE_CHECKING:
-    from cagepose.runs.run import Event, PhaseRun
+    from cagepose.runs.run import PhaseRun
 
 DRIVEN = "driven"
 """The rule of the events in which bodies of the cage are driven."""
@@ -26,28 +26,39 @@ def is_driven_on(phase: PhaseRun, event_index: int) -> bool:
 
 
 def row_on_curve(phase: PhaseRun, event_index: int, fraction: float) -> float | None:
-    """Return where on the curve of the phase's drive it is after ``fraction`` (0 to 1) of an event: 1.5 is midway
-    between its rows 1 and 2. None: the drive has not begun.
+    """Return where on the curve of the phase's drive, see `shares_of`, it is after ``fraction`` (0 to 1) of an event:
+    1.5 is midway between its rows 1 and 2. None: the drive has not begun, or nothing is driven or presses.
 
     In an event in which the drive goes on it does so evenly; in others, such as a snap, each row takes as long.
     """
-    first = first_row(phase.events, event_index)
-    if phase.drive is None or first is None:
+    first, of_phase = first_row(phase, event_index), shares_of(phase)
+    if of_phase is None or first is None:
         return None
     n_rows = len(phase.events[event_index].path)
-    shares = phase.drive.curve.share[first : first + n_rows + 1]
+    shares = of_phase[first : first + n_rows + 1]
     if is_driven_on(phase, event_index):
         share = float(shares[0] + fraction * (shares[-1] - shares[0]))
         return first + _crossing(shares, share)
     return first + fraction * n_rows
 
 
-def first_row(events: tuple[Event, ...], event_index: int) -> int | None:
+def shares_of(phase: PhaseRun) -> FloatArray | None:
+    """Return how much of the phase's drive is done at each row of its curve, or how much of the ways of what presses at
+    its start and after each step; None: nothing is driven or presses.
+    """
+    if phase.press is not None:
+        return np.concatenate([[0.0], phase.press.share])
+    return None if phase.drive is None else phase.drive.curve.share
+
+
+def first_row(phase: PhaseRun, event_index: int) -> int | None:
     """Return the row of the curve at which an event begins; None: the drive has not begun. The first row is where it
     begins; each pose of the paths of its events adds one.
     """
-    begins = next((index for index, event in enumerate(events) if event.rule == DRIVEN), None)
-    if begins is None or event_index < begins:
+    events, begins = phase.events, 0
+    if phase.press is None:
+        begins = next((index for index, event in enumerate(events) if event.rule == DRIVEN), len(events))
+    if event_index < begins:
         return None
     return sum(len(event.path) for event in events[begins:event_index])
 

@@ -1,7 +1,8 @@
-"""From the outcome of a run, as kernels write it, to what came of its drives."""
+"""From the outcome of a run, as kernels write it, to what came of its drives, and of what presses."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,8 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.runs.actions import cage_middle
-from cagepose.runs.driven import BodyRun, Curve, DriveRun
+from cagepose.runs.actions import body_numbers, cage_middle
+from cagepose.runs.driven import BodyRun, Curve, DriveRun, PressRun
 from cagepose.runs.drives import way_of
 
 
@@ -72,24 +73,51 @@ def _drive(record: Any, curve: Curve, bodies: dict[str, BodyRun], jams: tuple[tu
 
 
 def _bodies(scene: Scene, load: Load, outcome: Outcome, phase: int) -> dict[str, BodyRun]:
-    """Return how each body that a phase drives ends. Kernels tell moments about the middle of the cage."""
-    found, cage, record = dict[str, BodyRun](), scene.cage, outcome.phases[phase]
-    middle = cage_middle(scene)
-    for number, body in enumerate(cage.bodies, start=1):
-        if body.name not in load.drive:
-            continue
-        legs, displaced, driver = (
-            load.drive[body.name],
-            outcome.displaced[phase, number],
-            outcome.drivers[phase, number],
-        )
-        pose = Pose(displaced[:3], displaced[3:]) @ body.pose_cage_body
-        origin = cage.pose_world_cage.transform(pose.position_m)
-        found[body.name] = BodyRun(
-            pose,
-            *way_of(legs, float(record.share)),
-            driver[:3].copy(),
-            driver[3:6] + np.cross(middle - origin, driver[:3]),
-            float(driver[6]),
-        )
+    """Return how each body that a phase drives ends."""
+    share, bodies = float(outcome.phases[phase].share), scene.cage.bodies
+    return {
+        body.name: _body(scene, outcome, phase, number, *way_of(load.drive[body.name], share))
+        for number, body in enumerate(bodies, start=1)
+        if body.name in load.drive
+    }
+
+
+def _body(scene: Scene, outcome: Outcome, phase: int, number: int, travel_m: float, angle_rad: float) -> BodyRun:
+    """Return where a body ends that got so far, and what drives it. Kernels tell moments about the cage's middle."""
+    displaced, driver = outcome.displaced[phase, number], outcome.drivers[phase, number]
+    pose = Pose(displaced[:3], displaced[3:]) @ scene.cage.bodies[number - 1].pose_cage_body
+    arm = cage_middle(scene) - scene.cage.pose_world_cage.transform(pose.position_m)
+    moment = driver[3:6] + np.cross(arm, driver[:3])
+    return BodyRun(pose, travel_m, angle_rad, driver[:3].copy(), moment, float(driver[6]))
+
+
+def read_presses(scene: Scene, outcome: Outcome) -> list[PressRun | None]:
+    """Return what the bodies did that press in each phase that was run; None: none does."""
+    steps: Any = outcome.steps
+    found, numbers, shares = list[PressRun | None](), body_numbers(scene), shares_of_steps(scene, outcome)
+    for phase, (load, rows) in enumerate(zip(scene.loads, _steps_of_phases(outcome), strict=False)):
+        travels = steps["pressed"][rows, : len(load.press)].copy()
+        bodies = {
+            name: _body(scene, outcome, phase, numbers[name], float(travels[-1, place]), 0.0)
+            for place, name in enumerate(load.press)
+        }
+        found.append(PressRun(bodies, np.array(shares[rows]), travels) if bodies else None)
     return found
+
+
+def shares_of_steps(scene: Scene, outcome: Outcome) -> list[float]:
+    """Return how much of the phase's drive, or of all ways of what presses, is done after each step."""
+    steps: Any = outcome.steps
+    records: Any = outcome.phases
+    found, ends = steps["share"].copy(), records["share"].tolist()
+    for load, rows, end in zip(scene.loads, _steps_of_phases(outcome), ends, strict=False):
+        if load.press and end > 0.0:
+            found[rows] /= end
+    shares: list[float] = found.tolist()
+    return shares
+
+
+def _steps_of_phases(outcome: Outcome) -> Iterator[slice]:
+    records: Any = outcome.phases
+    lasts = records["n_steps"].tolist()
+    yield from map(slice, [0, *lasts], lasts)

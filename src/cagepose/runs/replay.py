@@ -15,7 +15,8 @@ def replay_event(run: Run, phase: int, event: int, *, in_python: bool = False) -
     """Make one event of a run again.
 
     A step of a method depends on nothing but the state before it, so this is the same event to the last digit. Where a
-    phase drives bodies of the cage it depends on all that came before: from there on the whole scene is run again.
+    phase drives bodies of the cage, or lets them press, it depends on all that came before: from there on the whole
+    scene is run again.
 
     Parameters
     ----------
@@ -39,7 +40,7 @@ def replay_event(run: Run, phase: int, event: int, *, in_python: bool = False) -
     scene, outcome = run.scene, solution.outcome
     first_step, n_steps = solution.steps_of(phase, event)
     steps: Any = outcome.steps
-    if any(load.drive for load in scene.loads[: phase + 1]):
+    if any(load.drive or load.press for load in scene.loads[: phase + 1]):
         return _in_a_whole_run(solution, phase, event, in_python=in_python)
     method, repeated = solution.method, empty_outcome(scene.geometry, 1, n_steps, outcome.order.shape[1])
     kernel = method.repeat.python if in_python else method.repeat

@@ -17,9 +17,9 @@ from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.wording import coordinates, counted, few
-from cagepose.runs.driven import DriveRun
+from cagepose.runs.driven import DriveRun, PressRun
 from cagepose.runs.frames import contact_columns, data_frame, drive_columns, event_columns
-from cagepose.runs.on_the_way import first_row, is_driven_on, row_on_curve, value_at
+from cagepose.runs.on_the_way import first_row, is_driven_on, row_on_curve, shares_of, value_at
 from cagepose.runs.proof import Proof
 
 MotionKind = Literal["travel", "turn", "screw"]
@@ -175,7 +175,7 @@ class Event:
         whose faces make the same angle with the push), "edge" (it begins to move only because a contact lies exactly on
         an edge: with another face of that the contacts would hold it); None: nothing.
     share
-        How much of the phase's drive is done after it, from 0 to 1.
+        How much of the phase's drive, or of the ways of what presses, is done after it, from 0 to 1.
     path
         Poses on the way to ``pose_world_object``, the last of them, where the way is not that of ``motion`` alone (a
         sliding contact bends it); empty: it is.
@@ -213,6 +213,8 @@ class PhaseRun:
     drive
         What came of the drive of bodies of the cage; None: nothing was driven, or the object did not come to rest
         before it.
+    press
+        What the bodies of the cage did that press; None: none does.
     """
 
     name: str
@@ -222,6 +224,7 @@ class PhaseRun:
     contacts: tuple[Contact, ...]
     proof: Proof
     drive: DriveRun | None = None
+    press: PressRun | None = None
 
     def __repr__(self) -> str:
         counts = counted((len(self.events), "event", "events"), (len(self.contacts), "contact", "contacts"))
@@ -246,7 +249,7 @@ class Frame:
     pose_world_object
         Where the object is.
     share
-        How much of the phase's drive is done, from 0 to 1.
+        How much of the phase's drive, or of the ways of what presses, is done, from 0 to 1.
     """
 
     phase_index: int
@@ -384,7 +387,7 @@ class Run:
     def frame_at(self, phase_index: int, event_index: int, fraction: float) -> Frame:
         """Return what is to be seen after ``fraction`` (0 to below 1) of an event.
 
-        Where its phase's drive goes on in it, the drive does so evenly.
+        Where its phase's drive goes on in it, or what presses, that does so evenly.
 
         Raises
         ------
@@ -394,12 +397,12 @@ class Run:
         phase = self.phases[phase_index]
         event = phase.events[event_index]
         start = phase.events[event_index - 1].pose_world_object if event_index else phase.start_pose
-        row = row_on_curve(phase, event_index, fraction)
-        if phase.drive is None or row is None or not is_driven_on(phase, event_index):
+        row, shares = row_on_curve(phase, event_index, fraction), shares_of(phase)
+        if shares is None or row is None or not is_driven_on(phase, event_index):
             return Frame(phase_index, event_index, fraction, self.pose_on_the_way(start, event, fraction), event.share)
-        first = first_row(phase.events, event_index) or 0
+        first = first_row(phase, event_index) or 0
         pose = self._pose_on_path(start, event, row - first)
-        return Frame(phase_index, event_index, fraction, pose, value_at(phase.drive.curve.share, row))
+        return Frame(phase_index, event_index, fraction, pose, value_at(shares, row))
 
     def pose_on_the_way(self, start: Pose, event: Event, fraction: float) -> Pose:
         """Return where the object is after ``fraction`` (0 to below 1) of an event's motion that began at ``start``.

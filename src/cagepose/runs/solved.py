@@ -12,7 +12,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.methods import Method
 from cagepose.runs.proof import Proof
-from cagepose.runs.read_drive import read_drives
+from cagepose.runs.read_drive import read_drives, read_presses, shares_of_steps
 from cagepose.runs.read_proof import read_proofs
 from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run, Verdict
 
@@ -78,7 +78,7 @@ def _read_phases(scene: Scene, method: Method, outcome: Outcome) -> tuple[PhaseR
     events = _divided(read_events(scene, method, outcome), phases["n_events"].tolist())
     ends = [of_phase[-1].pose_world_object for of_phase in events]
     contacts, proofs = judged(scene, outcome, ends)
-    drives = read_drives(scene, outcome)
+    drives, presses = read_drives(scene, outcome), read_presses(scene, outcome)
     starts = [scene.object.pose_world_object, *ends]
     found = list[PhaseRun]()
     for index, (code, proof) in enumerate(zip(codes, proofs, strict=True)):
@@ -93,6 +93,7 @@ def _read_phases(scene: Scene, method: Method, outcome: Outcome) -> tuple[PhaseR
                 contacts=tuple(contacts[index]),
                 proof=proof,
                 drive=drives[index],
+                press=presses[index],
             )
         )
     return tuple(found)
@@ -118,8 +119,7 @@ def read_events(scene: Scene, method: Method, outcome: Outcome) -> list[Event]:
         events["n_steps"].tolist(),
         strict=True,
     )
-    steps: Any = outcome.steps
-    shares = steps["share"].tolist()
+    shares = shares_of_steps(scene, outcome)
     found, first, elements = list[Event](), 0, scene.cage.element_names
     for rule, note, motion, hit, touching, pose, n_steps in columns:
         found.append(

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.kernels.algebra.least_squares import WRENCH
 from cagepose.kernels.contact import equilibrium
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.kernels.contact.friction import friction_of
@@ -109,9 +108,9 @@ class _Search:
         work: Any = self.at.scratch[0]
         self.states, self.tree = contacts.states, work.tree
         contacts.used[0] = work.n_asked
-        in_kernels = contacts.rows["columns"][..., :WRENCH]
+        in_kernels = contacts.rows["columns"][..., : contacts.n_freedoms]
         self.used = rows_in_order(in_kernels[: work.n_asked], self.lengths[..., None] * self.columns)
-        load = work.solver.load[:WRENCH]
+        load = work.solver.load[: contacts.n_freedoms]
         self.size = float(np.linalg.norm(load)) or 1.0
         self.is_of_first_order = self._take(in_kernels, load, run.phases[phase].proof.uniqueness == "strong")
 
@@ -148,7 +147,7 @@ class _Search:
         if not with_tree:
             return "not shown", ChosenFaces(chosen, forces, None), None
         if code == equilibrium.HELD_WITHOUT_FRICTION:
-            return "strong", ChosenFaces(chosen, forces, _root_alone(forces)), None
+            return "strong", ChosenFaces(chosen, forces, _root_alone(forces, len(self.problem.load))), None
         answer = search_with_faces(self.friction, self.at)
         if answer == strong.UNIQUE:
             return (
@@ -178,7 +177,7 @@ class _Search:
         return np.asarray(self.lengths[places] * self.states["forces"][self.used[places]] / self.size)
 
 
-def _root_alone(forces: FloatArray) -> ModeTree:
+def _root_alone(forces: FloatArray, n_freedoms: int) -> ModeTree:
     """A balance without friction: the load drives no motion that the contacts allow, and the proof is z = 0."""
     nothing = np.zeros(1)
-    return ModeTree((-1,), (-1,), ("none",), nothing, nothing, np.zeros((1, WRENCH)), forces[None])
+    return ModeTree((-1,), (-1,), ("none",), nothing, nothing, np.zeros((1, n_freedoms)), forces[None])

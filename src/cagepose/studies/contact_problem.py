@@ -17,7 +17,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.actions import wrench_at
 from cagepose.runs.cases import contact_friction
-from cagepose.runs.drives import displaced_after
+from cagepose.runs.drives import displaced_after, pressing_forces
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
 from cagepose.runs.tolerances import LEAST_RADIUS_OF_GYRATION
@@ -38,15 +38,16 @@ class ContactProblem:
     directions, places
         Of each contact: its outward normal and two tangents, unit vectors (n, 3, 3), and where it is, (n, 3), metres.
     wrenches
-        Force and moment of a unit force along each of the directions, (n, 3, 6), metres. The contact pushes the other
-        way.
+        Force and moment of a unit force along each of the directions, (n, 3, 6), metres, and what it does along the way
+        of each body that presses, as further columns. The contact pushes the other way.
     friction
         Coefficient of each, (n,).
     load
-        Force and moment in loads: scaled, it has length 1, (6,); zero where the loads cancel.
+        Force and moment, and what bodies press with, in loads: scaled, it has length 1, (6,) or more; zero where the
+        loads cancel.
     scale
-        D^-1/2 of (5.3), (6, 6): scaled wrenches are ``scale @ wrench``. By principal axes, as a needle's inertia about
-        its own axis would be lost in a matrix of the world.
+        D^-1/2 of (5.3), (6, 6) or more: scaled wrenches are ``scale @ wrench``. By principal axes, as a needle's
+        inertia about its own axis would be lost in a matrix of the world.
     """
 
     faces: tuple[ContactFace, ...]
@@ -94,21 +95,42 @@ def problem_of(
     arms = places - pose.transform(scene.object.center_of_gravity_m)
     wrenches = np.concatenate([directions, np.cross(arms[:, None], directions)], axis=2)
     friction = np.array([contact_friction(scene, of_scene, face.point, face.box) for face in faces])
-    scale = _scale(scene, pose)
-    load = np.concatenate(wrench_at(scene, phase, pose, displaced))
+    pressed, forces = _pressed(scene, phase, faces, directions, displaced)
+    wrenches = np.concatenate([wrenches, pressed], axis=2)
+    scale = _scale(scene, pose, len(forces))
+    load = np.concatenate([*wrench_at(scene, phase, pose, displaced), forces])
     load /= float(np.linalg.norm(scale @ load)) or 1.0
     by_group = tuple(map(tuple, groups.values()))
     return ContactProblem(faces, by_group, directions, places, wrenches, friction, load, scale)
 
 
-def _scale(scene: Scene, pose: Pose) -> FloatArray:
-    """Return D^-1/2, D = diag(1, 1, 1, K) along the principal axes of K; that of "drag" prefers none."""
+def _pressed(
+    scene: Scene, phase: int, faces: Sequence[ContactFace], directions: FloatArray, displaced: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return what unit forces along the directions of contacts do along the ways of k bodies that press, (n, 3, k), and
+    how hard each presses where it is, (k,), newtons.
+    """
+    cage, presses = scene.cage, scene.loads[phase].press
+    numbers = {body.name: number for number, body in enumerate(cage.bodies, start=1)}
+    of_elements = dict(zip(cage.element_names, cage.element_bodies, strict=True))
+    bodies = np.array([of_elements[face.point] for face in faces], dtype=np.int64)
+    found = np.zeros((len(faces), 3, len(presses)))
+    for place, (name, press) in enumerate(presses.items()):
+        own = bodies == numbers[name]
+        found[own, :, place] = -directions[own] @ (cage.pose_world_cage.rotation @ press.along_cage)
+    return found, np.array(list(pressing_forces(scene, phase, displaced).values()))
+
+
+def _scale(scene: Scene, pose: Pose, n_pressing: int) -> FloatArray:
+    """Return D^-1/2, D = diag(1, 1, 1, K) along the principal axes of K; that of "drag" prefers none. What presses has
+    the object's mass.
+    """
     gyration = scene.object.gyration_m2
     if (scene.metric or DEFAULT_METRIC) == "drag":
         squares, axes = np.full(3, np.trace(gyration) / 3.0), np.eye(3)
     else:
         squares, axes = np.linalg.eigh(gyration)
-    scale = np.eye(6)
+    scale = np.eye(6 + n_pressing)
     least = (LEAST_RADIUS_OF_GYRATION * scene.object.reach_m) ** 2
-    scale[3:, 3:] = (pose.rotation @ axes).T / np.sqrt(np.maximum(squares, least))[:, None]
+    scale[3:6, 3:6] = (pose.rotation @ axes).T / np.sqrt(np.maximum(squares, least))[:, None]
     return scale

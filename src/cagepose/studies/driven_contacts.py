@@ -24,8 +24,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.actions import actions_of, cage_middle
 from cagepose.runs.cases import cases_of, part_of
-from cagepose.runs.driven import DriveRun
-from cagepose.runs.drives import displaced_at
+from cagepose.runs.drives import displaced_at, way_in
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
 from cagepose.studies.contact_problem import ContactProblem, problem_of
@@ -79,7 +78,7 @@ class DriveContacts:
         drive = run.phases[phase].drive
         assert drive is not None
         self.phase, self.scene, self.curve = phase, run.scene, drive.curve
-        self.shares = [_share(one.drive) for one in run.phases[:phase]]
+        self.ways = [way_in(one) for one in run.phases[:phase]]
         self.friction = chosen_method(run.scene, run.method).friction(run.scene)
         self.cage, self.at = empty_cage(run.scene.geometry), empty_proof_workspace(run.scene.geometry)
 
@@ -114,7 +113,7 @@ class DriveContacts:
         return pose
 
     def _displaced(self, row: int) -> FloatArray:
-        return displaced_at(self.scene, [*self.shares, self.share_of(row)])
+        return displaced_at(self.scene, [*self.ways, self.share_of(row)])
 
     def at_row(self, row: int) -> DrivenContacts:
         """Return what touches at a row of the curve.
@@ -143,10 +142,6 @@ class DriveContacts:
         turns = [scene.object.reach_m * np.linalg.norm(twist[3:]) for twist in twists]
         growth = _growth(scene, phase, pose, displaced, twists)
         return DrivenContacts(problem, drifts, growth, float(max(*speeds, *turns)))
-
-
-def _share(drive: DriveRun | None) -> float:
-    return 0.0 if drive is None else drive.share
 
 
 def _twists(scene: Scene, phase: int, share: float) -> FloatArray:

@@ -113,7 +113,8 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
 
     Bodies of the cage stand where they were driven to. Returns None where the phase did not end in a balance, or in one
     without contacts or without a load on them, as on springs; where contacts without play carry its load to second
-    order, by forces without bound; and where points on edges have more than 729 choices of faces.
+    order, by forces without bound; where bodies press, of which `press_limits` tells; and where points on edges have
+    more than 729 choices of faces.
 
     Parameters
     ----------
@@ -130,6 +131,8 @@ def margin(run: Run, phase: int = -1) -> Margin | None:
     expect(run, Run, "run")
     number = range(len(run.phases))[phase]
     ended = run.phases[number]
+    if run.scene.loads[number].press:
+        return None
     if ended.verdict not in AT_REST | STOPPED or ended.proof.verdict == "moves" or not ended.contacts:
         return None
     contacts, groups = _counting_contacts(run, number)

@@ -24,18 +24,25 @@ def share_words(share: float) -> str:
 
 
 def how_far(phase: PhaseRun, length_unit: LengthUnit) -> str:
-    """Return how far a phase's drive got, to be put behind the verdict; empty: nothing was driven."""
+    """Return how far a phase's drive got, or what presses, to be put behind the verdict; empty: nothing did."""
+    if phase.press is not None:
+        told = (f"{name} after {_length(body.travel_m, length_unit)}" for name, body in phase.press.bodies.items())
+        return f" with what presses ({'; '.join(told)})"
     if phase.drive is None:
         return " where the drive begins" if phase.verdict in STOPPED else ""
     ways = []
     for name, body in phase.drive.bodies.items():
         amounts = []
         if body.travel_m:
-            amounts.append(f"{float(from_metres(body.travel_m, length_unit)):.4g} {length_unit}")
+            amounts.append(_length(body.travel_m, length_unit))
         if body.angle_rad:
             amounts.append(f"{math.degrees(body.angle_rad):.4g} deg")
         ways.append(f"{name} by {', '.join(amounts) or 'nothing'}")
     return f" at {share_words(phase.drive.share)} of the drive ({'; '.join(ways)})"
+
+
+def _length(length_m: float, length_unit: LengthUnit) -> str:
+    return f"{float(from_metres(length_m, length_unit)):.4g} {length_unit}"
 
 
 def drive_data(run: Run, phase_index: int, length_unit: LengthUnit) -> dict[str, Any] | None:

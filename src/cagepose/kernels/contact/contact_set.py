@@ -19,6 +19,7 @@ from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, sca
 from cagepose.kernels.boundary.bend import Bend
 from cagepose.kernels.boundary.geometry import Geometry, most_rows
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
+from cagepose.kernels.contact.pressing import Pressing, write_pressed
 from cagepose.kernels.native.kernel import kernel
 
 STEEP = 0.55
@@ -117,31 +118,33 @@ class ContactState:
 class ContactSet(NamedTuple):
     """The contacts at one pose, 0 to used - 1 (``used`` is (1,)): their geometry, and what they do.
 
-    ``bends`` say of each row how its surfaces bend. All that can move has ``n_freedoms`` together: of wrenches, motions
-    and loads so many numbers count.
+    ``bends`` say of each row how its surfaces bend, ``pressing`` of each body of the cage whether it presses. All that
+    can move has ``n_freedoms`` together: of wrenches, motions and loads so many numbers count.
     """
 
     used: IntArray
     rows: Rows[ContactRow]
     states: Rows[ContactState]
     bends: Rows[Bend]
+    pressing: Rows[Pressing]
     n_freedoms: int
 
 
-def empty_contact_set(n_rows: int, n_freedoms: int = WRENCH) -> ContactSet:
-    """Return a set with memory for ``n_rows`` contacts (plain Python)."""
+def empty_contact_set(n_rows: int, n_freedoms: int = WRENCH, n_bodies: int = 0) -> ContactSet:
+    """Return a set with memory for ``n_rows`` contacts, and ``n_bodies`` that may press (plain Python)."""
     return ContactSet(
         np.zeros(1, np.int64),
         empty_rows(ContactRow, n_rows),
         empty_rows(ContactState, n_rows),
         empty_rows(Bend, n_rows),
+        empty_rows(Pressing, n_bodies),
         n_freedoms,
     )
 
 
 def contact_set_for(geometry: Geometry) -> ContactSet:
     """Return a set with memory for all contacts that there may be at one pose (plain Python)."""
-    return empty_contact_set(most_rows(geometry))
+    return empty_contact_set(most_rows(geometry), n_bodies=len(geometry.cage.first_nodes) - 1)
 
 
 @kernel
@@ -191,9 +194,9 @@ def tangents_to(normal: Vector) -> tuple[Vector, Vector]:
 
 
 @kernel
-def write_directions(contact: ContactRow, normal: Vector, arm: Vector, share: float, frame: Frame) -> None:
+def write_directions(contacts: ContactSet, i: int, normal: Vector, arm: Vector, share: float, frame: Frame) -> None:
     """Write normal and tangents of a contact that does not drift, and its wrenches; the tangents are ``share`` long."""
-    one, other = tangents_to(normal)
+    contact, (one, other) = contacts.rows[i], tangents_to(normal)
     directions = (normal, scaled(one, share), scaled(other, share))
     for k in range(3):
         contact.arm[k], contact.drift[k] = arm[k], 0.0
@@ -201,5 +204,8 @@ def write_directions(contact: ContactRow, normal: Vector, arm: Vector, share: fl
         for k in range(3):
             contact.directions[j, k] = directions[j][k]
         write_scaled_wrench(directions[j], cross(arm, directions[j]), frame, contact.wrenches[j])
-        for k in range(WRENCH):
+    if contacts.n_freedoms > WRENCH:
+        write_pressed(contacts.pressing, contact.cage_body, contact.directions, contacts.n_freedoms, contact.wrenches)
+    for j in range(3):
+        for k in range(contacts.n_freedoms):
             contact.columns[j, k] = contact.wrenches[j, k]

@@ -17,6 +17,7 @@ from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.load_curvature import add_circulation, add_load_curvature
 from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Frame
+from cagepose.kernels.contact.pressing import add_pressed_curvature, add_pressing_stiffness
 from cagepose.kernels.native.kernel import kernel
 
 
@@ -37,7 +38,10 @@ def add_face_curvature(
     add_turned_arm(normal, arm, -carried, frame.axes, frame.radii, out)
     add_coupling(normal, -carried, frame.axes, frame.radii, out)
     bend = contacts.bends[i]
-    add_matrix(bend.twin_sliding if curved and bend.has_twin else bend.sliding, -carried, out)
+    sliding = bend.twin_sliding if curved and bend.has_twin else bend.sliding
+    add_matrix(sliding, -carried, out)
+    if contacts.n_freedoms > WRENCH:
+        add_pressed_curvature(contacts.pressing, contact.cage_body, sliding, -carried, out)
 
 
 @kernel
@@ -97,6 +101,8 @@ def write_curvature(
     """
     clear_matrix(out, contacts.n_freedoms)
     add_load_curvature(load, position, quaternion, frame, out)
+    if contacts.n_freedoms > WRENCH:
+        add_pressing_stiffness(contacts.pressing, out)
     for i in range(contacts.used[0]):
         contact, state = contacts.rows[i], contacts.states[i]
         if state.forces[0] > 0.0 and not state.is_sticking:

@@ -90,7 +90,7 @@ def append_meeting(
     contact.gap, contact.group, contact.is_added = row.gap, first, False
     choose(contacts, place, place == first)
     normal, arm = vector_from(row.normal), minus(vector_from(row.place), center)
-    write_directions(contact, normal, arm, friction_share(friction, cage_part, part), frame)
+    write_directions(contacts, place, normal, arm, friction_share(friction, cage_part, part), frame)
     met = Meeting(True, row.gap, normal, vector_from(row.place))
     found = curvatures(held, row.feature, cage, row.cage_feature, met, is_around(row))
     write_bend(found, normal, arm, frame.axes, frame.radii, contacts.bends[place])

@@ -20,6 +20,7 @@ from cagepose.kernels.contact.cone import ConeWorkspace
 from cagepose.kernels.contact.contact_set import ContactSet, choose, stays_on_face, write_directions
 from cagepose.kernels.contact.edges import has_one_choice
 from cagepose.kernels.contact.metric import Frame, twist_of
+from cagepose.kernels.contact.pressing import velocity_of_body
 from cagepose.kernels.contact.tolerances import LAST_TURN_RAD, ROUNDING_OF_SPEED, SAME_WAY, SPEED_OF_ENTRY
 from cagepose.kernels.native.kernel import kernel
 
@@ -184,7 +185,7 @@ def add_point(contacts: ContactSet, i: int, angle: float, frame: Frame) -> None:
     new.part, new.cage_part, new.cage_body = row.part, row.cage_part, row.cage_body
     new.gap, new.group, new.is_added = row.gap, place, True
     new.feature, new.cage_feature, new.angle = row.feature, row.cage_feature, row.angle + angle
-    write_directions(new, normal, arm, norm(vector_from(row.directions[1])), frame)
+    write_directions(contacts, place, normal, arm, norm(vector_from(row.directions[1])), frame)
     choose(contacts, place, True)
     state.is_locked = state.is_sticking = state.has_carried = state.kept_chosen = False
     for k in range(3):
@@ -224,10 +225,11 @@ def add_on_circles(contacts: ContactSet, frame: Frame, friction: float, y: Float
     With friction y is a twist that forces are asked to resist, which they do up to mu |v_t| faster. What y is the rest
     of has ``terms`` of this length: slower than their rounding, nothing goes in.
     """
-    velocity, spin = twist_of(y, frame)
+    of_object, spin = twist_of(y, frame)
     fastest, at_fastest = -1, 0.0
     least = max(SPEED_OF_ENTRY * length(y, contacts.n_freedoms), ROUNDING_OF_SPEED * terms)
     for i in range(contacts.used[0]):
+        velocity = minus(of_object, velocity_of_body(contacts.pressing, contacts.rows[i].cage_body, y))
         angle, speed = deepest_on_arc(contacts, i, friction, velocity, spin)
         if speed > least:
             fastest, at_fastest, least = i, angle, speed

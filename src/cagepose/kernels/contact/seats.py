@@ -66,7 +66,7 @@ def write_as_ball(contacts: ContactSet, i: int, middle: Vector, frame: Frame) ->
     away = minus(arm, middle)
     radius = math.copysign(norm(away), dot(away, vector_from(row.directions[0])))
     normal = scaled(away, 1.0 / radius)
-    write_directions(row, normal, arm, norm(vector_from(row.directions[1])), frame)
+    write_directions(contacts, i, normal, arm, norm(vector_from(row.directions[1])), frame)
     for k in range(3):
         around.ball[k] = middle[k]
     found = Curvatures(NOTHING, NOTHING, across(normal, radius))

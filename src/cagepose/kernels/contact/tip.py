@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.algebra.vector import cross, dot, vector_from
+from cagepose.kernels.algebra.vector import cross, dot, minus, vector_from
 from cagepose.kernels.contact.cone import clear_cone, cone_residual
 from cagepose.kernels.contact.contact_set import ContactSet, count_chosen
 from cagepose.kernels.contact.coulomb import coulomb_onset, obeys
 from cagepose.kernels.contact.metric import Frame, ScaledVector, twist_of
 from cagepose.kernels.contact.on_circle import add_on_circles, add_point, angle_of_deepest
+from cagepose.kernels.contact.pressing import velocity_of_body
 from cagepose.kernels.contact.tolerances import PARALLEL_COSINE, SAME_PLACE_RAD
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -108,6 +109,7 @@ def leave_out_circle(contacts: ContactSet, i: int) -> None:
 def angle_to_deepest(contacts: ContactSet, i: int, angle: float, y: ScaledVector, frame: Frame) -> float:
     """Return how far along a rim, radians, the point is from one at an angle that goes in fastest, or opens slowest."""
     velocity, spin = twist_of(y, frame)
+    velocity = minus(velocity, velocity_of_body(contacts.pressing, contacts.rows[i].cage_body, y))
     away = angle_of_deepest(contacts, i, 0.0, velocity, spin, 0.0) - angle
     return math.atan2(math.sin(away), math.cos(away))
 

@@ -5,6 +5,7 @@ A share from 0 to 1 says how much of a phase's drive is done. All is seen from t
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -48,6 +49,9 @@ class DriveMemory(NamedTuple):
         Velocity, spin and length of each leg, (n_bodies, n_legs, 7).
     n_legs
         How many legs each body follows in the phase, (n_bodies,).
+    limits
+        The driver's force along its way at which each body stops, at the beginning, and how it changes for a unit
+        share, (n_bodies, 2); inf: at none.
     actions, anchors
         What acts in each phase, (n_phases, n_actions), with springs on bodies held where these are now; and where
         springs are held in the scene, (n_phases, n_actions, 3).
@@ -57,6 +61,7 @@ class DriveMemory(NamedTuple):
     reached: FloatArray
     twists: FloatArray
     n_legs: IntArray
+    limits: FloatArray
     actions: Rows[PhaseLoad]
     anchors: FloatArray
 
@@ -70,6 +75,7 @@ def empty_drive_memory(n_phases: int, n_bodies: int, n_legs: int, n_actions: int
         np.zeros((n_bodies, 7)),
         np.zeros((n_bodies, n_legs, 7)),
         np.zeros(n_bodies, np.int64),
+        np.full((n_bodies, 2), np.inf),
         np.zeros((n_phases, n_actions), dtype_of(Action)),
         np.zeros((n_phases, n_actions, 3)),
     )
@@ -123,6 +129,7 @@ def begin_phase(phase: int, start: Start, cases: Cases, memory: DriveMemory) -> 
     middle = scaled(transposed_times(turned, row(still, 0)), -1.0)
     for body in range(number_of_bodies(geometry.cage)):
         memory.n_legs[body] = n_legs = drives.n_legs[phase, body]
+        memory.limits[body, 0] = math.inf
         is_driven = is_driven or n_legs > 0
         for k in range(7):
             memory.begun[body, k] = memory.reached[body, k]
@@ -249,6 +256,39 @@ def write_drivers(
             driver[6] = power / twist[6]
             total += driver[6]
     return total
+
+
+@kernel
+def has_limit(stop_at: float, memory: DriveMemory) -> bool:
+    """Whether the drive stops at a force."""
+    found = stop_at < math.inf
+    for body in range(len(memory.limits)):
+        found = found or memory.limits[body, 0] < math.inf
+    return found
+
+
+@kernel
+def left_to_limit(stop_at: float, total: float, share: float, drivers: FloatArray, memory: DriveMemory) -> float:
+    """Return how much the drivers' forces may still rise, the sum of them up to ``stop_at`` and that of each body up to
+    its own limit, as a part of these; below zero: one is past it; inf: there are none.
+    """
+    left = (stop_at - total) / stop_at if stop_at < math.inf else math.inf
+    for body in range(len(drivers)):
+        limit, rate = memory.limits[body, 0], memory.limits[body, 1]
+        if limit < math.inf:
+            left = min(left, (limit + rate * share - drivers[body, 6]) / max(abs(limit), abs(rate)))
+    return left
+
+
+@kernel
+def slack_at(share: float, memory: DriveMemory) -> float:
+    """Return the share from which on a body that nothing resists is held by its limit, which is zero; inf: none is."""
+    nearest = math.inf
+    for body in range(len(memory.limits)):
+        limit, rate = memory.limits[body, 0], memory.limits[body, 1]
+        if limit < math.inf and rate < 0.0 and limit > 0.0:
+            nearest = min(nearest, max(-limit / rate, share))
+    return nearest
 
 
 @kernel

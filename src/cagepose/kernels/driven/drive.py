@@ -15,8 +15,10 @@ from cagepose.kernels.contact.metric import way_between
 from cagepose.kernels.driven.advance import furthest_share, met_on_chord
 from cagepose.kernels.driven.bodies import (
     is_driven_by,
+    left_to_limit,
     move_bodies,
     next_leg,
+    slack_at,
     twist_of_body,
     write_drift,
     write_drivers,
@@ -42,6 +44,8 @@ LEAST_ADVANCE = 1e-11
 """In shares: less is no progress."""
 MOST_CHOICES = 32
 """Choices of faces that are asked at one place."""
+AT_LIMIT = 1e-9
+"""Of the limit: a force so near to it has got there."""
 STILL_LIMIT = 6
 """Steps without progress, one after the other, after which a drive has stalled."""
 
@@ -199,7 +203,8 @@ def drive_on(
 
         # Nothing happens before something is met.
         if stands_still(drive, position, share, work):
-            to_share = longest_advance(fastest_turn(share, work), share, ends)
+            slack = slack_at(share, work.memory)
+            to_share = min(longest_advance(fastest_turn(share, work), share, ends), slack)
             hit = met_on_chord(drive, position, quaternion, share, position, quaternion, to_share, work)
             reached = to_share if hit.amount == math.inf else share + hit.amount * (to_share - share)
             write_state(run.trace.rows[step], here)
@@ -209,6 +214,8 @@ def drive_on(
             write_driven(drive, step, reached, position, quaternion, False, work)
             n_still = 0 if reached - share > LEAST_ADVANCE else n_still + 1
             share, step, goes_on = reached, step + 1, False
+            if share >= slack:
+                return STOPS, step, here, share
             if n_still == STILL_LIMIT:
                 break
             continue
@@ -219,7 +226,8 @@ def drive_on(
             is_mode = choose_mode(drive, position, quaternion, share, to_share, work)
             if is_mode and step > first_step:
                 step = write_jump(drive, step, share, position, quaternion, work)
-                if run.trace.rows[step - 1].driving >= drive.stop_at:
+                driving = run.trace.rows[step - 1].driving
+                if left_to_limit(drive.stop_at, driving, share, work.drivers, work.memory) <= 0.0:
                     return STOPS, step, here, share
         reached, end, turned = share, position, quaternion
         if is_mode and step < step_limit:
@@ -239,7 +247,8 @@ def drive_on(
                     write_drift(run.contacts, i, end, reached, work.memory)
             n_still = 0 if reached - share > LEAST_ADVANCE else n_still + 1
             share, step, position, quaternion = reached, step + 1, end, turned
-            if drive.stop_at < math.inf and run.trace.rows[step - 1].driving >= drive.stop_at * (1.0 - 1e-9):
+            driving = run.trace.rows[step - 1].driving
+            if left_to_limit(drive.stop_at, driving, share, work.drivers, work.memory) <= AT_LIMIT:
                 return STOPS, step, State(position, quaternion, state.turn_step_rad, 0, 0), share
             continue
 

@@ -26,5 +26,5 @@ def search_jam(friction: float, drive: FloatArray, beside: FloatArray, at: Proof
         As left by the proof of a rest; the seventh number of each column says how the contact drifts. Filled: the tree.
     """
     contacts, scratch = at.contacts, at.scratch[0]
-    driven = ContactSet(contacts.used, contacts.rows, contacts.states, contacts.bends, WRENCH + 1)
+    driven = ContactSet(contacts.used, contacts.rows, contacts.states, contacts.bends, contacts.pressing, WRENCH + 1)
     return search_drive(driven, friction, drive, beside, scratch.tree, scratch.solver.newton, at.system)

@@ -109,7 +109,7 @@ def follow_contact(
         return met
     arm = minus(met.place, position)
     row.gap = met.gap
-    write_directions(row, met.normal, arm, share, frame)
+    write_directions(contacts, i, met.normal, arm, share, frame)
     found = curvatures(moved, row.feature, cage, row.cage_feature, met, False)
     write_bend(found, met.normal, arm, frame.axes, frame.radii, contacts.bends[i])
     return met

@@ -11,8 +11,10 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.boundary.overlap import forget_shells
-from cagepose.kernels.driven.bodies import begin_drives, begin_phase, move_bodies, write_displacement
+from cagepose.kernels.contact.pressing import number_pressing
+from cagepose.kernels.driven.bodies import begin_drives, begin_phase, move_bodies, write_displacement, write_drivers
 from cagepose.kernels.driven.drive import drive_on
+from cagepose.kernels.driven.press import begin_pressing, press_on
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, start_of
@@ -37,8 +39,8 @@ def phase_from(
     is_driven: bool,
     work: DriveWorkspace,
 ) -> tuple[int, int, Vector, Quaternion, float]:
-    """Run a phase of a case from a state, with its drive if it is driven; return (verdict code, number of steps,
-    position, quaternion, share of the drive).
+    """Run a phase of a case from a state, with its drive if it is driven, or what presses; return (verdict code, number
+    of steps, position, quaternion, share of the drive, or way of what presses in metres).
     """
     setting = Setting(
         start.geometry,
@@ -49,9 +51,12 @@ def phase_from(
         rules.turn_step_rad,
         start.tolerances,
     )
+    work.scratch[0].greatest = work.scratch[0].least_jam = math.nan  # of what is not driven
+    if number_pressing(work.run.proof.contacts.pressing) > 0:
+        verdict, n_steps, end, share = press_on(setting, cases, phase, state, rules.step_limit, work)
+        return verdict, n_steps, end.position, end.quaternion, share
     verdict, n_steps, end = steps_from(setting, state, 0, rules.step_limit, work.run)
     share = 0.0
-    work.scratch[0].greatest = work.scratch[0].least_jam = math.nan  # of what is not driven
     if is_driven and verdict == RESTS:
         drive = DriveSetting(setting, phase, cases.drives.stop_at[phase])
         verdict, n_steps, end, share = drive_on(drive, end, n_steps, rules.step_limit, work)
@@ -71,13 +76,22 @@ def run_phase(
 ) -> tuple[int, int, Vector, Quaternion, float]:
     """Run one phase of a case from its beginning; see `phase_from`."""
     is_driven = begin_phase(phase, start, cases, work.memory)
+    begin_pressing(start.geometry, cases, phase, work)
     move_bodies(start.geometry, phase, 0.0, work.memory)
     state = State(position, quaternion, rules.turn_step_rad, 0, 0)
     return phase_from(start, part, cases, phase, state, rules, is_driven, work)
 
 
 @kernel
-def publish_drive(phase: int, share: float, start: Start, work: DriveWorkspace, outcome: Outcome) -> None:
+def publish_drive(
+    phase: int,
+    share: float,
+    position: Vector,
+    quaternion: Quaternion,
+    start: Start,
+    work: DriveWorkspace,
+    outcome: Outcome,
+) -> None:
     """Write where the bodies of the cage are after a phase, and what their drivers do there; contacts carry then what
     they carried along the drive.
     """
@@ -91,6 +105,9 @@ def publish_drive(phase: int, share: float, start: Start, work: DriveWorkspace, 
     record.share = share
     record.driving = record.greatest = record.greatest_at = record.work = record.rubbed = record.lost = 0.0
     record.least_jam = math.inf
+    if number_pressing(work.run.proof.contacts.pressing) > 0:
+        publish_pressing(phase, position, quaternion, start, work, outcome)
+        return
     if not is_driven or (share == 0.0 and record.verdict not in (BLOCKED, JAMS, STOPS)):
         return
     record.work, record.rubbed, record.lost = scratch.work, scratch.rubbed, scratch.lost
@@ -113,6 +130,21 @@ def publish_drive(phase: int, share: float, start: Start, work: DriveWorkspace, 
         contact.force_normal = forces[0]
         for k in range(3):
             contact.force_tangential[k] = -(forces[1] * directions[1, k] + forces[2] * directions[2, k])
+
+
+@kernel
+def publish_pressing(
+    phase: int, position: Vector, quaternion: Quaternion, start: Start, work: DriveWorkspace, outcome: Outcome
+) -> None:
+    """Write what pushes each body that presses, its guide's forces too, in balance with the contacts of the proof."""
+    proof, drivers = work.run.proof.contacts, outcome.drivers[phase]
+    record = outcome.phases[phase]
+    if record.verdict != RESTS:
+        return
+    write_drivers(proof, position, quaternion, start.actions[phase], 0.0, work.memory, drivers)
+    for body in range(len(drivers)):
+        one = proof.pressing[body]
+        drivers[body, 6] = one.force if one.freedom > 0 else 0.0
 
 
 @kernel
@@ -146,7 +178,7 @@ def run_quasistatic(part: Part, cases: Cases, rules: QuasistaticRules, work: Dri
         verdict, n_steps, end, turned, share = run_phase(start, part, cases, rules, phase, position, quaternion, work)
         publish_events(run.trace, n_steps, True, position, quaternion, start, part, outcome)
         verdict = end_phase(verdict, phase, end, turned, start, part, run.proof, outcome)
-        publish_drive(phase, share, start, work, outcome)
+        publish_drive(phase, share, end, turned, start, work, outcome)
         if not goes_on_after(verdict):
             return
         position, quaternion = end, turned

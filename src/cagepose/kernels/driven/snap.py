@@ -16,7 +16,7 @@ from cagepose.kernels.driven.rest_of_mode import list_carrying
 from cagepose.kernels.driven.stiffness import hold_carried, least_stiffness
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.outcome.trace import LIMIT, RESTS
+from cagepose.kernels.outcome.trace import ESCAPES, LIMIT, RESTS
 from cagepose.kernels.quasistatic.first_contact import Twist
 from cagepose.kernels.quasistatic.path import Path, on_faces
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts
@@ -133,7 +133,7 @@ def snaps(
             if verdict == LIMIT and most < step_limit:
                 continue
             away = way_between(state.position, state.quaternion, after.position, after.quaternion, setting.body.reach_m)
-            if away > max(STAYS * push_m, MOVED * setting.size_m):
+            if verdict == ESCAPES or away > max(STAYS * push_m, MOVED * setting.size_m):
                 return verdict, step, after
     place_object(setting.geometry, state.position, state.quaternion, run.placement)
     return RESTS, first_step, state
@@ -173,7 +173,8 @@ def rests_ahead(
             continue
         with_bodies = way_between(state.position, state.quaternion, begin, turned, reach_m)
         away = way_between(begin, turned, after.position, after.quaternion, reach_m)
-        if (verdict == RESTS and may_stay) or away > max(STAYS * with_bodies, MOVED * setting.size_m):
+        goes = verdict == ESCAPES or away > max(STAYS * with_bodies, MOVED * setting.size_m)
+        if goes or (verdict == RESTS and may_stay):
             return verdict, step, after, share + ahead
     move_bodies(setting.geometry, drive.phase, share, work.memory)
     place_object(setting.geometry, state.position, state.quaternion, run.placement)

@@ -78,7 +78,7 @@ def is_jammed(drive: DriveSetting, position: Vector, quaternion: Quaternion, wor
         row = turned.rows[i]
         for j in range(3):
             row.columns[j, n], row.drift[j] = row.drift[j] / fastest, 0.0
-    driven = ContactSet(turned.used, turned.rows, turned.states, turned.bends, n + 1)
+    driven = ContactSet(turned.used, turned.rows, turned.states, turned.bends, turned.pressing, n + 1)
     frame = frame_at(drive.setting.body, quaternion)
     terms = write_load(drive.setting.load, position, quaternion, frame, scratch.load)
     for k in range(n):

@@ -13,7 +13,14 @@ from cagepose.kernels.boundary.geometry import cage_at, held_moved
 from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.contact.coulomb_newton import CARRYING_LIMIT, SLIPS, STICKS, n_forces
 from cagepose.kernels.contact.metric import frame_at, moved_along_twist, twist_of, way_between
-from cagepose.kernels.driven.bodies import move_bodies, twist_of_body, write_drift, write_drivers
+from cagepose.kernels.driven.bodies import (
+    has_limit,
+    left_to_limit,
+    move_bodies,
+    twist_of_body,
+    write_drift,
+    write_drivers,
+)
 from cagepose.kernels.driven.rate import APART, NO_SLIP, copy_contact, slip_of, speed_of, write_change
 from cagepose.kernels.driven.rest_of_mode import (
     along_slip,
@@ -39,6 +46,8 @@ NEXT_TO_NOTHING = 1e-12
 """In sizes of the scene, in slips: so far a guard may be below zero."""
 NO_FORCE = 1e-9
 """In greatest forces. Likewise: what a rest leaves of the balance, contacts that carry nothing share."""
+OF_NO_LOAD = 1e-4
+"""In what a load is measured by where there is none: forces are compared with so much at least, as all are rounding."""
 TURNS_BACK = 1e-6
 """In speeds: a slip that turns back by less still goes on."""
 LITTLE = 1e-5
@@ -236,7 +245,7 @@ def write_guards(
     frame = frame_at(setting.body, quaternion)
 
     # What carries: forces above zero, inside their cones, and along the slip.
-    greatest = scratch.rest.least_terms * NO_FORCE
+    greatest = scratch.rest.least_terms * OF_NO_LOAD
     for i in range(trial.used[0]):
         if trial.states[i].counts:
             greatest = max(greatest, trial.states[i].forces[0] * length(trial.rows[i].columns[0], n))
@@ -286,9 +295,9 @@ def write_guards(
     hold_carried(trial, work)
     out[after + HITS_LIMIT] = least_stiffness(drive, trial, rest.curvature, work) + LEAST_STABLE
     out[after + HITS_LIMIT + 1] = scratch.leap
-    if drive.stop_at < math.inf:
+    if has_limit(drive.stop_at, work.memory):
         along = write_drivers(trial, position, quaternion, setting.load, share - APART, work.memory, work.drivers)
-        out[after + HITS_LIMIT + 2] = (drive.stop_at - along) / drive.stop_at
+        out[after + HITS_LIMIT + 2] = left_to_limit(drive.stop_at, along, share, work.drivers, work.memory)
     least = math.inf
     for k in range(len(out)):
         least = min(least, out[k])

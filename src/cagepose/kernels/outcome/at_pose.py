@@ -8,11 +8,12 @@ from cagepose.kernels.boundary.geometry import PlacedCage
 from cagepose.kernels.contact.metric import frame_at
 from cagepose.kernels.native.kernel import entry
 from cagepose.kernels.outcome.cases import Cases, Part, start_of
+from cagepose.kernels.outcome.presses import press_at_start
 from cagepose.kernels.outcome.publish import begin, end_phase
 from cagepose.kernels.outcome.records import Outcome
 from cagepose.kernels.outcome.trace import RESTS
 from cagepose.kernels.stability.critical_friction import least_friction_of_faces
-from cagepose.kernels.stability.proof import ProofWorkspace, stand_at
+from cagepose.kernels.stability.proof import ProofWorkspace, are_balanced, stand_at, with_all_freedoms
 
 
 @entry
@@ -33,6 +34,7 @@ def judge_start(phase: int, part: Part, cases: Cases, cage: PlacedCage, at: Proo
     """
     begin(outcome)
     start = start_of(0, part, cases, cage)
+    press_at_start(phase, start, cases, at.contacts.pressing)
     end_phase(RESTS, phase, start.position, start.quaternion, start, part, at, outcome)
 
 
@@ -45,9 +47,26 @@ def critical_friction(phase: int, part: Part, cases: Cases, cage: PlacedCage, at
     """
     start = start_of(0, part, cases, cage)
     load = start.actions[phase]
-    if not stand_at(start.geometry, part.body, start.position, start.quaternion, load, start.friction, at):
+    press_at_start(phase, start, cases, at.contacts.pressing)
+    asked = with_all_freedoms(at)
+    if not stand_at(start.geometry, part.body, start.position, start.quaternion, load, start.friction, asked):
         return math.nan
-    return least_friction_of_faces(frame_at(part.body, start.quaternion), at)
+    return least_friction_of_faces(frame_at(part.body, start.quaternion), asked)
+
+
+@entry
+def is_balanced_at_start(phase: int, part: Part, cases: Cases, cage: PlacedCage, at: ProofWorkspace) -> bool:
+    """Whether the contacts can balance the load of a phase, and what presses in it, at the start pose of the first
+    case, to first order.
+
+    Parameters as for `judge_start`.
+    """
+    start = start_of(0, part, cases, cage)
+    press_at_start(phase, start, cases, at.contacts.pressing)
+    asked = with_all_freedoms(at)
+    return are_balanced(
+        start.geometry, part.body, start.position, start.quaternion, start.actions[phase], start.friction, asked
+    )
 
 
 @entry

@@ -17,7 +17,13 @@ from cagepose.kernels.outcome.cases import Part, Start, object_position
 from cagepose.kernels.outcome.motion import motion_between, motion_of_twist
 from cagepose.kernels.outcome.records import Outcome, PhaseRecord
 from cagepose.kernels.outcome.trace import AT_EDGE, LET_GO, NONE, RESTS, SCREW, STALLED, Trace
-from cagepose.kernels.stability.proof import OTHER_ONSET, PROVEN_MOVES, TOO_MANY_CONTACTS, ProofWorkspace
+from cagepose.kernels.stability.proof import (
+    OTHER_ONSET,
+    PROVEN_MOVES,
+    TOO_MANY_CONTACTS,
+    ProofWorkspace,
+    with_all_freedoms,
+)
 from cagepose.kernels.stability.proof_search import judge
 
 PHASES, EVENTS, STEPS, CONTACTS = 0, 1, 2, 3
@@ -37,7 +43,7 @@ def begin(outcome: Outcome) -> None:
 def judge_end(
     phase: int, position: Vector, quaternion: Quaternion, start: Start, part: Part, at: ProofWorkspace
 ) -> tuple[int, int, int]:
-    """Judge the pose at the end of a phase under its load; see `judge`."""
+    """Judge the pose at the end of a phase under its load, with what presses there; see `judge`."""
     return judge(
         start.geometry,
         part.body,
@@ -46,7 +52,7 @@ def judge_end(
         start.actions[phase],
         start.friction,
         start.size_m,
-        at,
+        with_all_freedoms(at),
     )
 
 
@@ -212,8 +218,8 @@ def publish_proof(
     phase.residual = scratch.solver.residual
     phase.is_second_order, phase.is_chained = scratch.solver.is_second_order, scratch.solver.is_chained
     phase.is_clamped = scratch.is_clamped
-    phase.n_undetermined = n_undetermined
-    for i in range(n_undetermined):
+    phase.n_undetermined = min(n_undetermined, WRENCH)
+    for i in range(phase.n_undetermined):
         for k in range(WRENCH):
             phase.undetermined[i, k] = scratch.rest.ways.basis[i, k]
     phase.motion = NONE

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import FloatArray, Rows, empty_rows
+from cagepose.kernels.contact.pressing import MOST_PRESSING
 
 TRAVEL, TURN, SCREW, NONE = 0, 1, 2, 3
 """Codes of motions: the index into `MOTION_NAMES`; NONE has no name."""
@@ -63,6 +64,8 @@ class StepRecord:
         Pose before the step.
     share, driving
         How much of the phase's drive is done after it, and the sum of the drivers' forces along their ways there.
+    pressed
+        How far each body that presses has gone in the phase after it, metres, in the order of their freedoms.
     could_jam
         Whether forces could stand against the drive there, whatever they are.
     turn_step, n_still, n_refined
@@ -83,6 +86,7 @@ class StepRecord:
     start_quaternion: Annotated[FloatArray, 4]
     share: float
     driving: float
+    pressed: Annotated[FloatArray, MOST_PRESSING]
     could_jam: bool
     turn_step: float
     n_still: int

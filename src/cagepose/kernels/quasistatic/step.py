@@ -309,6 +309,8 @@ def write_step(
     record.rule, record.motion, record.note, record.is_at_edge = rule, motion, PLAIN, is_at_edge
     record.distance = record.share = record.driving = 0.0  # the way is told by the poses
     record.could_jam = False
+    for k in range(len(record.pressed)):
+        record.pressed[k] = 0.0
     for k in range(3):
         record.position[k] = position[k]
     for k in range(4):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from cagepose.kernels.algebra.least_squares import System, clear, empty_system
+from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, WRENCH, System, clear, empty_system
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector
@@ -18,6 +18,7 @@ from cagepose.kernels.contact.edges import (
 )
 from cagepose.kernels.contact.equilibrium import (
     AT_REST,
+    HELD_BY_FRICTION,
     HELD_WITHOUT_FRICTION,
     MOVES,
     UNSOLVED,
@@ -31,6 +32,7 @@ from cagepose.kernels.contact.friction import Friction
 from cagepose.kernels.contact.loads import PhaseLoad, write_load
 from cagepose.kernels.contact.metric import Body, Frame, ScaledVector, frame_at
 from cagepose.kernels.contact.on_circle import drop_idle
+from cagepose.kernels.contact.pressing import number_pressing, write_pressing_load
 from cagepose.kernels.contact.self_stress import forget_locked, write_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -95,15 +97,25 @@ class ProofWorkspace(NamedTuple):
     system: System
 
 
+@kernel
+def with_all_freedoms(at: ProofWorkspace) -> ProofWorkspace:
+    """Return a workspace whose contacts are asked with the freedoms of the bodies that press, besides the object's."""
+    contacts = at.contacts
+    n_freedoms = WRENCH + number_pressing(contacts.pressing)
+    asked = ContactSet(contacts.used, contacts.rows, contacts.states, contacts.bends, contacts.pressing, n_freedoms)
+    return ProofWorkspace(at.placement, asked, at.statuses, at.scratch, at.system)
+
+
 def empty_proof_workspace(geometry: Geometry) -> ProofWorkspace:
     """Return a workspace for one proof (plain Python)."""
-    n_contacts = most_rows(geometry)
+    n_contacts, n_bodies = most_rows(geometry), len(geometry.cage.first_nodes) - 1
+    n_freedoms = min(WRENCH + n_bodies - 1, MOST_FREEDOMS)  # what stands still does not press
     return ProofWorkspace(
         empty_placement(geometry),
         contact_set_for(geometry),
         empty_rows(ContactStatus, n_contacts),
         empty_rows(AnalysisWorkspace, 1),
-        empty_system(max(N_COLUMNS, n_contacts)),
+        empty_system(max(N_COLUMNS, n_contacts), n_freedoms + 1),
     )
 
 
@@ -122,7 +134,28 @@ def stand_at(
     place_object(geometry, position, quaternion, at.placement)
     solver = at.scratch[0].solver
     solver.load_terms = write_load(load, position, quaternion, frame, solver.load)
+    if at.contacts.n_freedoms > WRENCH:
+        solver.load_terms += write_pressing_load(at.contacts.pressing, solver.load)
     return find_contacts(geometry, at.placement, friction, position, frame, at.contacts)
+
+
+@kernel
+def are_balanced(
+    geometry: Geometry,
+    body: Body,
+    position: Vector,
+    quaternion: Quaternion,
+    load: PhaseLoad,
+    friction: Friction,
+    at: ProofWorkspace,
+) -> bool:
+    """Whether forces in the cones balance the object and all that presses at a pose. Filled: as by `stand_at`, and the
+    forces.
+    """
+    if not stand_at(geometry, body, position, quaternion, load, friction, at):
+        return False
+    code = equilibrium(at.contacts, frame_at(body, quaternion), friction.greatest, AT_REST, at.scratch[0].solver)
+    return code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
 
 
 @kernel

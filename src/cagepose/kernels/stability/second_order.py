@@ -27,6 +27,7 @@ from cagepose.kernels.contact.curvature import write_circulation, write_curvatur
 from cagepose.kernels.contact.load_curvature import has_circulation
 from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Frame, ScaledVector
+from cagepose.kernels.contact.pressing import number_pressing
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.contact_status import ContactStatus
 from cagepose.kernels.stability.other_balance import OtherBalance, may_be_stopped
@@ -369,8 +370,8 @@ def stability(
     features that bend by different amounts, one way off it may be stable and another not: unless those that bend least
     and those that bend most say the same, nothing is shown. Nor is it where another balance may stop a motion (5.38).
     """
-    if contacts.n_freedoms != WRENCH:
-        return STABILITY_NOT_SHOWN  # curvatures are of one free body
+    if contacts.n_freedoms != WRENCH + number_pressing(contacts.pressing):
+        return STABILITY_NOT_SHOWN  # curvatures are of one free body, and of what presses on it
     at_limit = find_held(contacts, statuses, friction, locked, work, system)
     n_held, n_ways = work.held.used, work.ways.used
     n_one_sided = list_one_sided(contacts, statuses, work, system)

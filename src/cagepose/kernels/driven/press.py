@@ -1,0 +1,185 @@
+"""Bodies of the cage that press: they go on, or give way, until each is held by as much force as it presses with.
+
+What presses is slow: at each place of it the object is at rest. So a body that lacks force is driven along its
+direction until its driver's force is that of its press, and one that is pushed harder is driven back: drives with a
+limit of force, one after the other. It ends where forces in the cones balance the object and all that presses.
+"""
+
+from __future__ import annotations
+
+import math
+
+from cagepose.kernels.algebra.least_squares import WRENCH
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.vector import Vector, dot, vector_from
+from cagepose.kernels.boundary.features import number_of_bodies
+from cagepose.kernels.boundary.geometry import Geometry
+from cagepose.kernels.contact.metric import way_between
+from cagepose.kernels.driven.bodies import move_bodies, pose_from, write_drivers
+from cagepose.kernels.driven.drive import drive_on
+from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
+from cagepose.kernels.native.kernel import kernel
+from cagepose.kernels.outcome.cases import Cases
+from cagepose.kernels.outcome.presses import press_at
+from cagepose.kernels.outcome.trace import BLOCKED, ESCAPES, JAMS, LIMIT, NONE, RESTS, STALLED
+from cagepose.kernels.quasistatic.run import steps_from
+from cagepose.kernels.quasistatic.setting import Setting
+from cagepose.kernels.quasistatic.step import HELD, State, note_touching, stand_at, write_state, write_step
+from cagepose.kernels.stability.proof import are_balanced, with_all_freedoms
+
+ENOUGH = 1e-9
+"""Of what a body presses with: a force that is so near to it is it."""
+LETS_GO = 1e-3
+"""In sizes of the scene: so far all that presses gives way where it can neither go on nor hold."""
+MOST_LET_GO = 4
+"""So often it does in a phase."""
+SWEEPS = 64
+"""Drives of a phase, after which it has stalled."""
+FARTHEST = 10.0
+"""In sizes of the scene: a body that has gone so far and meets too little does not come back."""
+NO_WAY = 1e-11
+"""In sizes of the scene: a shorter way is none."""
+
+
+@kernel
+def begin_pressing(geometry: Geometry, cases: Cases, phase: int, work: DriveWorkspace) -> None:
+    """Write how all bodies press in a phase where they stand."""
+    pressing = work.run.proof.contacts.pressing
+    for body in range(1, number_of_bodies(geometry.cage)):
+        position, quaternion = pose_from(work.memory.reached[body])
+        press_at(cases.drives.presses[phase][body], geometry, position, quaternion, pressing[body])
+
+
+@kernel
+def is_balanced(setting: Setting, position: Vector, quaternion: Quaternion, work: DriveWorkspace) -> bool:
+    """Whether forces in the cones balance the object and all that presses, with the bodies where they stand."""
+    asked = with_all_freedoms(work.run.proof)
+    return are_balanced(setting.geometry, setting.body, position, quaternion, setting.load, setting.friction, asked)
+
+
+@kernel
+def lacks(setting: Setting, state: State, body: int, work: DriveWorkspace) -> float:
+    """Return by how much more a body presses than the contacts resist it, with the forces that they carry; zero: by
+    next to nothing, or it does not press.
+    """
+    pressing = work.run.proof.contacts.pressing[body]
+    if pressing.freedom == 0:
+        return 0.0
+    write_drivers(work.run.contacts, state.position, state.quaternion, setting.load, 0.0, work.memory, work.drivers)
+    resisted = dot(vector_from(work.drivers[body]), vector_from(pressing.direction))
+    missing = pressing.force - resisted
+    return missing if abs(missing) > ENOUGH * max(abs(pressing.force), abs(resisted)) else 0.0
+
+
+@kernel
+def begin_sweep(setting: Setting, state: State, attempt: int, longest: float, work: DriveWorkspace) -> float:
+    """Let bodies that press go on which are resisted too little, and if none is, let those give way that are resisted
+    too much. Return how far they may go, metres, below zero: give way; 0: none has anywhere to go.
+
+    The first attempt is of all. In the second one all give way a little, whatever resists them: as between contacts
+    that hold them fast, but only with more force than they have. The next ones are of one body each.
+    """
+    memory, pressing, side = work.memory, work.run.proof.contacts.pressing, 0.0
+    only, lets_go = attempt - 1, attempt == 1
+    for sense in (1.0, -1.0):
+        for body in range(1, len(memory.n_legs)):
+            if pressing[body].freedom == 0 or (only > 0 and body != only):
+                continue
+            if sense < 0.0 if lets_go else sense * lacks(setting, state, body, work) > 0.0:
+                memory.n_legs[body], side = 1, sense
+        if side != 0.0:
+            break
+    way = LETS_GO * setting.size_m if lets_go else longest
+    for body in range(1, len(memory.n_legs)):
+        if memory.n_legs[body] == 0:
+            continue
+        one, twist = pressing[body], memory.twists[body, 0]
+        for k in range(3):
+            twist[k], twist[3 + k] = side * way * one.direction[k], 0.0
+        twist[6] = way
+        if not lets_go:
+            memory.limits[body, 0], memory.limits[body, 1] = side * one.force, -one.stiffness * way
+        for k in range(7):
+            memory.begun[body, k] = memory.reached[body, k]
+    return side * way
+
+
+@kernel
+def note_sweep(first: int, last: int, begun: float, way: float, work: DriveWorkspace) -> None:
+    """Write into the steps ``first`` up to, without, ``last`` how far all that presses has gone, ``begun`` being the
+    way of all sweeps before, and ``way`` that of this one.
+    """
+    rows, pressing = work.run.trace.rows, work.run.proof.contacts.pressing
+    for step in range(first, last):
+        share = rows[step].share
+        for body in range(1, len(pressing)):
+            if pressing[body].freedom > 0:
+                at = pressing[body].freedom - WRENCH
+                before = rows[first - 1].pressed[at] if first > 0 else 0.0
+                rows[step].pressed[at] = before + (way * share if work.memory.n_legs[body] > 0 else 0.0)
+        rows[step].share = begun + abs(way) * share
+
+
+@kernel
+def stand_still(work: DriveWorkspace) -> None:
+    """Let no body be driven."""
+    for body in range(len(work.memory.n_legs)):
+        work.memory.n_legs[body] = 0
+        work.memory.limits[body, 0] = math.inf
+
+
+@kernel
+def press_on(
+    setting: Setting, cases: Cases, phase: int, state: State, step_limit: int, work: DriveWorkspace
+) -> tuple[int, int, State, float]:
+    """Run a phase in which bodies press, from a state; return (verdict code, number of steps, state, way of all sweeps
+    in metres).
+    """
+    run, reach_m, attempt, step, done, here = work.run, setting.body.reach_m, 0, 0, 0.0, state
+    goes_on, longest, n_let_go = False, reach_m, 0
+    if is_balanced(setting, here.position, here.quaternion, work):
+        stand_at(setting, here.position, here.quaternion, run)
+        note_touching(run)
+        write_state(run.trace.rows[0], here)
+        write_step(run, 0, HELD, NONE, False, here.position, here.quaternion)
+        return RESTS, 1, here, done
+    for _ in range(SWEEPS):
+        # The object comes to rest while all bodies stand, unless it is at the end of a way, and goes on.
+        stand_still(work)
+        if not goes_on:
+            first, begun = step, State(here.position, here.quaternion, state.turn_step_rad, 0, 0)
+            verdict, step, here = steps_from(setting, begun, first, step_limit, run)
+            note_sweep(first, step, done, 0.0, work)
+            if verdict != RESTS:
+                return verdict, step, here, done
+
+        # What presses goes on, or gives way.
+        way, first, share, before = begin_sweep(setting, here, attempt, longest, work), step, 0.0, here
+        if way != 0.0:
+            drive = DriveSetting(setting, phase, math.inf)
+            verdict, step, here, share = drive_on(drive, here, first, step_limit, work)
+            note_sweep(first, step, done, way, work)
+            done += abs(way) * share
+            move_bodies(setting.geometry, phase, share, work.memory)
+            begin_pressing(setting.geometry, cases, phase, work)
+        stand_still(work)
+        if verdict in (ESCAPES, LIMIT):
+            return verdict, step, here, done
+        if way != 0.0 and is_balanced(setting, here.position, here.quaternion, work):
+            return RESTS, step, here, done
+        if way > 0.0 and done > FARTHEST * setting.size_m:
+            return ESCAPES, step, here, done
+
+        # Where nothing is met it goes farther, and where it is stopped it is tried otherwise.
+        goes_on = verdict == RESTS and attempt != 1
+        moved = way_between(before.position, before.quaternion, here.position, here.quaternion, reach_m)
+        if abs(way) * share > NO_WAY * setting.size_m:
+            longest = 2.0 * longest if share == 1.0 and moved == 0.0 and attempt == 0 else reach_m
+            attempt = 0
+        elif attempt < len(work.memory.n_legs):
+            lets_go = attempt == 0 and verdict in (BLOCKED, JAMS) and n_let_go < MOST_LET_GO
+            n_let_go += 1 if lets_go else 0
+            attempt += 1 if lets_go or attempt > 0 else 2
+        else:
+            break
+    return STALLED, step, here, done
