@@ -420,7 +420,7 @@ def test_bodies_of_the_cage_stand_still_where_they_start_and_what_is_driven_is_s
         (tmp_path / file).write_bytes(content)
     notes = " ".join(export.notes)
     assert "bodies of the cage stand still in the file where they start, as one with it: jaw" in notes
-    assert "what is driven in the scene is not in the file: grip, close" in notes
+    assert "what is driven or presses in the scene is not in the file: grip, close" in notes
     found = imported.imported(str(tmp_path / "scene.xml")).scene
     assert found.cage.element_names == scene.cage.element_names
     assert found.cage.points_cage == pytest.approx(scene.cage.points_cage)

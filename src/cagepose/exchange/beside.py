@@ -40,15 +40,15 @@ def not_kept(scene: Scene) -> list[str]:
     if scene.cage.bodies:
         bodies = few(body.name for body in scene.cage.bodies)
         found.append(f"bodies of the cage stand still in the file where they start, as one with it: {bodies}")
-    if driven := few(load.name for load in scene.loads if load.drive):
-        found.append(f"what is driven in the scene is not in the file: {driven}")
+    if driven := few(load.name for load in scene.loads if load.drive or load.press):
+        found.append(f"what is driven or presses in the scene is not in the file: {driven}")
     return found
 
 
 def _without_drive(cage: Cage, load: Load) -> dict[str, Any] | None:
     """Return a load as a scene file in metres has it, of a cage whose bodies stand still; None: nothing acts then."""
     writer = SceneWriter("m")
-    found = {key: value for key, value in writer.load(load).items() if key not in ("drive", "stop_at")}
+    found = {key: value for key, value in writer.load(load).items() if key not in ("drive", "stop_at", "press")}
     if load.springs:
         ends = ({"to": writer.lengths(cage.spring_end_world(spring))} for spring in load.springs)
         springs = zip(found["springs"], ends, strict=True)

@@ -88,7 +88,7 @@ def crosscheck(done: Run) -> Crosscheck:
     Raises
     ------
     SceneError
-        MuJoCo's format cannot hold a part of the scene, or a load drives a body of the cage; which is named.
+        MuJoCo's format cannot hold a part of the scene, or a load drives a body of the cage, or lets it press; which is named.
     MissingExtraError
         There is no MuJoCo.
     CageposeError
@@ -109,11 +109,12 @@ def crosscheck(done: Run) -> Crosscheck:
 def _expect_still(scene: Scene) -> None:
     problems = [
         Problem(
-            ("loads", index, "drive"),
-            f"{load.name!r} drives a body, and MuJoCo is asked where all of the cage stands still; leave the load out",
+            ("loads", index, key),
+            f"{load.name!r} {verb} a body, and MuJoCo is asked where all of the cage stands still; leave the load out",
         )
         for index, load in enumerate(scene.loads)
-        if load.drive
+        for key, verb, bodies in (("drive", "drives", load.drive), ("press", "presses with", load.press))
+        if bodies
     ]
     if problems:
         raise SceneError(problems)
