@@ -88,7 +88,8 @@ def crosscheck(done: Run) -> Crosscheck:
     Raises
     ------
     SceneError
-        MuJoCo's format cannot hold a part of the scene, or a load drives a body of the cage, or lets it press; which is named.
+        MuJoCo's format cannot hold a part of the scene, or a load drives a body of the cage or lets one press; which is
+        named.
     MissingExtraError
         There is no MuJoCo.
     CageposeError
