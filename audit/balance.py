@@ -174,8 +174,11 @@ class _Frame:
         couple: FloatArray | None = None,
         *,
         of_all: bool = False,
+        pressed: float = 0.0,
     ) -> None:
-        """With ``of_all`` the load is as large as all that acts, which may balance without contacts."""
+        """With ``of_all`` the load is as large as all that acts, which may balance without contacts; and it is no
+        smaller than what bodies press with.
+        """
         points = corners(scene, pose) if scene.object.boxes else pose.position_m[None]
         reach = float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
         self.length = 2.0 * reach if scene.object.boxes else scene.size_m
@@ -186,7 +189,7 @@ class _Frame:
             total = total + np.concatenate([np.zeros(3), couple / self.length])
             size += float(np.linalg.norm(couple)) / self.length
         force, moment = float(np.linalg.norm(total[:3])), float(np.linalg.norm(total[3:]))
-        self.magnitude = max(force, moment, size if of_all else 1e-9 * size)
+        self.magnitude = max(force, moment, size if of_all else 1e-9 * size, pressed)
         self.load = total / self.magnitude
 
     def wrench(self, force: FloatArray, at: FloatArray) -> FloatArray:
@@ -204,15 +207,34 @@ def _edges(frame: _Frame, touch: Touch, mu: float, n_sides: int, outside: bool) 
 
 
 def imbalance(scene: Scene, phase: PhaseRun) -> float:
-    """What the reported forces leave of the load of a phase, in loads; all of its contacts have forces."""
+    """What the reported forces leave of the load of a phase, and of what bodies press with, in loads; all of its
+    contacts have forces.
+    """
     frame, places = _frame_of(scene, phase)
-    net = frame.load.copy()
+    net, left = frame.load.copy(), _presses(scene, phase) / frame.magnitude
+    bodies = dict(zip(scene.cage.element_names, scene.cage.element_bodies, strict=True))
+    presses, turned = load_of(scene, phase.name).press, scene.cage.pose_world_cage.rotation
+    ways = [turned @ press.along_cage for press in presses.values()]
+    numbers = [[body.name for body in scene.cage.bodies].index(name) + 1 for name in presses]
     for contact, place in zip(phase.contacts, places, strict=True):
         assert contact.force_normal_n is not None
         assert contact.force_tangential_n is not None
         force = contact.force_tangential_n - contact.force_normal_n * contact.normal_world
         net += frame.wrench(force / frame.magnitude, place)
-    return float(max(np.linalg.norm(net[:3]), np.linalg.norm(net[3:])))
+        for which, (number, way) in enumerate(zip(numbers, ways, strict=True)):
+            left[which] -= float(force @ way) / frame.magnitude if bodies[contact.point] == number else 0.0
+    return float(max(np.linalg.norm(net[:3]), np.linalg.norm(net[3:]), np.abs(left).max(initial=0.0)))
+
+
+def _presses(scene: Scene, phase: PhaseRun) -> FloatArray:
+    """What bodies press with at the end of a phase, newtons, in the order of the load."""
+    found = []
+    for name, press in load_of(scene, phase.name).press.items():
+        body = next(body for body in scene.cage.bodies if body.name == name)
+        assert phase.press is not None
+        way = phase.press.bodies[name].pose_cage_body.position_m - body.pose_cage_body.position_m
+        found.append(press.force_n - press.stiffness_n_per_m * float(way @ press.along_cage))
+    return np.array(found)
 
 
 def _frame_of(scene: Scene, phase: PhaseRun) -> tuple[_Frame, FloatArray]:
@@ -222,7 +244,8 @@ def _frame_of(scene: Scene, phase: PhaseRun) -> tuple[_Frame, FloatArray]:
     acts, couple = acting_at(scene, load, phase.pose, driven)
     world = dict(zip(scene.cage.names, scene.cage.points_world(), strict=True))
     places = np.array([world.get(contact.point, contact.place_world) for contact in phase.contacts])
-    return _Frame(scene, phase.pose, places, acts, couple, of_all=load.needs_newtons), places
+    pressed = float(_presses(scene, phase).max(initial=0.0))
+    return _Frame(scene, phase.pose, places, acts, couple, of_all=load.needs_newtons, pressed=pressed), places
 
 
 def _wrong_forces(scene: Scene, phase: PhaseRun) -> list[str]:

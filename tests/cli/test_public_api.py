@@ -17,9 +17,9 @@ Adjustable Box Cage CageBody CageposeError Capsule Certificate certificate Certi
 check_certificate ChosenFaces compare Comparison Cone Contact ContactFace ContactMargin Convex Cylinder Design
 DesignResults Disc Drive DriveCheck DrivenPlace DriveProof Event Facets Force Frame FreeMotion Hole Insertion
 insertion JamChoice KernelsError Load load_certificates load_run load_scene Margin margin Misalignment MisalignmentEnd
-MissingExtraError ModeTree Moment Motion Object OtherOnset Parting PhaseRun Play play Pose Problem Proof Run run
-run_many RunFileError Runs save_run save_scene Scene SceneError SceneFileError Shape Sphere Spring StopChoice Study
-StudyFolderError StudyResults Tolerances Variant __version__
+MissingExtraError ModeTree Moment Motion Object OtherOnset Parting PhaseRun Play play Pose Press press_limits Problem
+Proof Run run run_many RunFileError Runs save_run save_scene Scene SceneError SceneFileError Shape Sphere Spring
+StopChoice Study StudyFolderError StudyResults Tolerances Variant __version__
 Variation with_critical_friction
 """
 

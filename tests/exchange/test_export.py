@@ -67,11 +67,13 @@ def sagitta(scene: Scene) -> float:
     return max(radii, default=0.0) * (1.0 / np.cos(np.pi / SIDES_OF_ROUND) - 1.0)
 
 
-def drive_bodies(model, scene: Scene, phase) -> None:
-    """Put geoms of bodies of the cage from where they start, as a model has them, to where their only drive ends."""
-    for body in scene.cage.bodies if phase.drive else ():
-        if body.name in phase.drive.bodies:
-            way = phase.drive.bodies[body.name].pose_cage_body @ body.pose_cage_body.inverse()
+def move_bodies(model, scene: Scene, phase, poses: dict[str, Pose]) -> None:
+    """Put geoms of bodies of the cage from where the phase before left them to where they are driven, or press."""
+    moved = {**(phase.drive.bodies if phase.drive else {}), **(phase.press.bodies if phase.press else {})}
+    for body in scene.cage.bodies:
+        if body.name in moved:
+            before, after = poses.get(body.name, body.pose_cage_body), moved[body.name].pose_cage_body
+            way, poses[body.name] = after @ before.inverse(), after
             for name in (*body.names, *(shape.name for shape in body.shapes)):
                 for geom in elements(model)[f"cage/{name}"]:
                     placed = way @ Pose(model.geom_pos[geom], model.geom_quat[geom])
@@ -88,8 +90,9 @@ def test_what_touches_at_the_end_of_a_phase_touches_in_mujoco(path):
     geoms = elements(model)
     off = POINT_OF_SIZE * scene.size_m + OF_MESHES * scene.size_m + 2.0 * sagitta(scene)
     assert model.nkey == len(found.phases)
+    poses: dict[str, Pose] = {}
     for index, phase in enumerate(found.phases):
-        drive_bodies(model, scene, phase)
+        move_bodies(model, scene, phase, poses)
         mujoco.mj_resetDataKeyframe(model, data, index)
         mujoco.mj_forward(model, data)
         assert model.key(index).name == phase.name

@@ -36,7 +36,7 @@ def test_the_rules_of_the_paper_hold_the_starter_before_its_last_stop() -> None:
 
 
 SEVERAL_LOADS = {"forces", "moments", "springs", "follows", "to", "stiffness", "preload"}
-DRIVEN = {"bodies", "drive", "stop_at", "travel", "turn", "about", "through", "moment"}
+DRIVEN = {"bodies", "drive", "stop_at", "travel", "turn", "about", "through", "moment", "press", "along", "spring"}
 ROUND = {
     "shapes",
     "radius",

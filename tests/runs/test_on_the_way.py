@@ -54,8 +54,8 @@ def test_a_drive_goes_on_evenly_and_events_end_where_they_end(closed: Run) -> No
 def test_each_pose_of_the_paths_of_a_drive_has_its_row_of_the_curve() -> None:
     for phase in run(jaws(turns_after=True)).phases[:2]:
         assert phase.drive is not None
-        assert first_row(phase.events, 0) is None
-        places = [first_row(phase.events, index) for index in range(1, len(phase.events))]
+        assert first_row(phase, 0) is None
+        places = [first_row(phase, index) for index in range(1, len(phase.events))]
         for first, event in zip(places, phase.events[1:], strict=True):
             assert first is not None
             rows = slice(first + 1, first + 1 + len(event.path))

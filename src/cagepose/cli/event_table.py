@@ -105,6 +105,6 @@ def _driven(run: Run) -> dict[str, Load]:
 def _depth(row: Change, loads: Mapping[str, Load], words: LengthWords) -> str:
     """Return how far the bodies have got after an event; empty in a phase that moves none."""
     load, press = loads.get(row.phase.name), row.phase.press
-    if press is not None:
+    if press is not None and row.phase.drive is None:
         return f"{words.lengths(press.ways_at(row.event.share).values())} {words.unit}"
     return "" if load is None else words.depth(load, row.event.share)

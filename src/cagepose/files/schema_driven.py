@@ -75,9 +75,7 @@ class PressModel(Mapping):
 
     model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": [key]} for key in ("force", "spring")]})
 
-    along: Direction = Field(
-        description="In which it is pushed, in the cage's frame, any length.", examples=[[1, 0, 0]]
-    )
+    along: Direction = Field(description="In which it is pushed, [x, y, z] in the cage's frame; any length.")
     force: Positive | None = Field(None, description="How hard, newtons.", examples=[12])
     spring: PressSpringModel | None = Field(
         None, description="Instead of force: a spring.", examples=[{"stiffness": 0.5, "preload": 8}]

@@ -94,6 +94,12 @@ class Drive:
         )
         return Drive(travel, about, through, self.angle_rad)
 
+    def goes_along(self, direction: FloatArray) -> bool:
+        """Whether its travel is not square to a unit vector."""
+        if self.travel_m is None:
+            return False
+        return abs(float(self.travel_m @ direction)) > PARALLEL_SINE * float(np.linalg.norm(self.travel_m))
+
     @property
     def is_turn(self) -> bool:
         """Whether it is a turn alone, which is driven by a moment."""

@@ -218,13 +218,13 @@ class Load:
             _set_field(self, "stop_at", float(self.stop_at))
 
     def _check_press(self, problems: ProblemList) -> None:
-        for name in self.press:
-            if name in self.drive:
-                message = "is driven in this phase, too, and a body follows its way or its force; give it one of them"
+        for name, press in self.press.items():
+            if any(leg.about_cage is not None for leg in self.drive.get(name, ())):
+                message = "presses in a direction that stays, and the drive turns it; let it turn in another phase"
                 problems.add(("press", name), message)
-        if self.press and self.drive and not set(self.press) & set(self.drive):
-            message = f"stands beside a drive ({few(self.drive)}); give them phases of their own, one after the other"
-            problems.add(("press",), message)
+            elif any(leg.goes_along(press.along_cage) for leg in self.drive.get(name, ())):
+                message = "is driven along the direction in which it presses; there it has its way or its force"
+                problems.add(("press", name), message)
 
     @property
     def is_weight_alone(self) -> bool:

@@ -74,5 +74,6 @@ def cage_at_end(run: Run, phase_index: int = -1) -> CageAt:
     """Return the cage at the end of a phase; left out: of the run."""
     index = phase_index % len(run.phases)
     phase = run.phases[index]
-    share = 0.0 if phase.drive is None else phase.drive.share
-    return cage_at(run, index, share if phase.press is None else 1.0)
+    if phase.drive is not None:
+        return cage_at(run, index, phase.drive.share)
+    return cage_at(run, index, 0.0 if phase.press is None else 1.0)

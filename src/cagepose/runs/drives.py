@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -98,17 +98,19 @@ def displaced_by(drives: Sequence[Drive], share: float) -> Pose:
     return found
 
 
-PhaseWay = float | Mapping[str, float]
-"""How far bodies have got in a phase: the share of its drive, or of each body that presses how far it has gone."""
+class PhaseWay(NamedTuple):
+    """How far bodies have got in a phase: the share of its drive, and of each body that presses how far it has gone."""
+
+    share: float
+    pressed: Mapping[str, float]
 
 
 def way_in(phase: PhaseRun, share: float | None = None) -> PhaseWay:
     """Return how far bodies have got after a share of a phase of a run; left out: at its end."""
-    if phase.press is not None:
-        return phase.press.ways_at(1.0 if share is None else share)
-    if share is not None:
-        return share
-    return 0.0 if phase.drive is None else phase.drive.share
+    if share is None:
+        share = 1.0 if phase.drive is None else phase.drive.share
+    pressed = {} if phase.press is None else phase.press.ways_at(share)
+    return PhaseWay(0.0 if phase.drive is None else share, pressed)
 
 
 def displaced_bodies(scene: Scene, ways: Sequence[PhaseWay]) -> dict[str, Pose]:
@@ -117,12 +119,10 @@ def displaced_bodies(scene: Scene, ways: Sequence[PhaseWay]) -> dict[str, Pose]:
     """
     found = {body.name: Pose() for body in scene.cage.bodies}
     for load, way in zip(scene.loads, ways, strict=False):
-        if isinstance(way, Mapping):
-            for name, gone in way.items():
-                found[name] = Pose(gone * load.press[name].along_cage) @ found[name]
-        else:
-            for name, legs in load.drive.items():
-                found[name] = displaced_by(legs, way) @ found[name]
+        for name, legs in load.drive.items():
+            found[name] = displaced_by(legs, way.share) @ found[name]
+        for name, gone in way.pressed.items():
+            found[name] = Pose(gone * load.press[name].along_cage) @ found[name]
     return found
 
 

@@ -46,7 +46,7 @@ def shares_of(phase: PhaseRun) -> FloatArray | None:
     """Return how much of the phase's drive is done at each row of its curve, or how much of the ways of what presses at
     its start and after each step; None: nothing is driven or presses.
     """
-    if phase.press is not None:
+    if phase.press is not None and phase.drive is None:
         return np.concatenate([[0.0], phase.press.share])
     return None if phase.drive is None else phase.drive.curve.share
 
@@ -56,7 +56,7 @@ def first_row(phase: PhaseRun, event_index: int) -> int | None:
     begins; each pose of the paths of its events adds one.
     """
     events, begins = phase.events, 0
-    if phase.press is None:
+    if phase.press is None or phase.drive is not None:
         begins = next((index for index, event in enumerate(events) if event.rule == DRIVEN), len(events))
     if event_index < begins:
         return None

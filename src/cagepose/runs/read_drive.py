@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.outcome.records import Outcome
-from cagepose.kernels.outcome.trace import BLOCKED, JAMS, STOPS
+from cagepose.kernels.outcome.trace import BLOCKED, JAMS, RESTS, STOPS
 from cagepose.kernels.quasistatic.step import DRIVEN
 from cagepose.model.checks import FloatArray
 from cagepose.model.load import Load
@@ -17,7 +18,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.actions import body_numbers, cage_middle
 from cagepose.runs.driven import BodyRun, Curve, DriveRun, PressRun
-from cagepose.runs.drives import way_of
+from cagepose.runs.drives import pressing_forces, way_of
 
 
 def read_drives(scene: Scene, outcome: Outcome) -> list[DriveRun | None]:
@@ -94,12 +95,16 @@ def _body(scene: Scene, outcome: Outcome, phase: int, number: int, travel_m: flo
 def read_presses(scene: Scene, outcome: Outcome) -> list[PressRun | None]:
     """Return what the bodies did that press in each phase that was run; None: none does."""
     steps: Any = outcome.steps
+    phases: Any = outcome.phases
     found, numbers, shares = list[PressRun | None](), body_numbers(scene), shares_of_steps(scene, outcome)
     for phase, (load, rows) in enumerate(zip(scene.loads, _steps_of_phases(outcome), strict=False)):
         travels = steps["pressed"][rows, : len(load.press)].copy()
+        forces = dict.fromkeys(load.press, 0.0)
+        if phases[phase]["verdict"] in (RESTS, BLOCKED, JAMS, STOPS):
+            forces = pressing_forces(scene, phase, outcome.displaced[phase])
         bodies = {
-            name: _body(scene, outcome, phase, numbers[name], float(travels[-1, place]), 0.0)
-            for place, name in enumerate(load.press)
+            name: replace(_body(scene, outcome, phase, numbers[name], float(travels[-1, place]), 0.0), along=force)
+            for place, (name, force) in enumerate(forces.items())
         }
         found.append(PressRun(bodies, np.array(shares[rows]), travels) if bodies else None)
     return found
@@ -111,7 +116,7 @@ def shares_of_steps(scene: Scene, outcome: Outcome) -> list[float]:
     records: Any = outcome.phases
     found, ends = steps["share"].copy(), records["share"].tolist()
     for load, rows, end in zip(scene.loads, _steps_of_phases(outcome), ends, strict=False):
-        if load.press and end > 0.0:
+        if load.press and not load.drive and end > 0.0:
             found[rows] /= end
     shares: list[float] = found.tolist()
     return shares

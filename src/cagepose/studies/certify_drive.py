@@ -28,11 +28,11 @@ from cagepose.studies.tolerances import SAME_FREEDOM
 
 
 def drive_proof(run: Run, phase: int) -> DriveProof | None:
-    """Return what is proven of the drive of a phase, counted from 0; None: nothing was driven, or at some place there
-    are more than 729 choices of faces, or more contacts than there is memory for, or rounding leaves it open whether
-    the object could jam.
+    """Return what is proven of the drive of a phase, counted from 0; None: nothing was driven, or bodies press beside,
+    whose freedoms are not asked along a drive, or at some place there are more than 729 choices of faces, or more
+    contacts than there is memory for, or rounding leaves it open whether the object could jam.
     """
-    if run.phases[phase].drive is None:
+    if run.phases[phase].drive is None or run.scene.loads[phase].press:
         return None
     known = DriveContacts(run, phase)
     places, last = list[DrivenPlace](), None

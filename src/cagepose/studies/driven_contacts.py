@@ -24,7 +24,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.actions import actions_of, cage_middle
 from cagepose.runs.cases import cases_of, part_of
-from cagepose.runs.drives import displaced_at, way_in
+from cagepose.runs.drives import PhaseWay, displaced_at, way_in
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import Run
 from cagepose.studies.contact_problem import ContactProblem, problem_of
@@ -113,7 +113,7 @@ class DriveContacts:
         return pose
 
     def _displaced(self, row: int) -> FloatArray:
-        return displaced_at(self.scene, [*self.ways, self.share_of(row)])
+        return displaced_at(self.scene, [*self.ways, PhaseWay(self.share_of(row), {})])
 
     def at_row(self, row: int) -> DrivenContacts:
         """Return what touches at a row of the curve.

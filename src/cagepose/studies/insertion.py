@@ -58,8 +58,8 @@ def insertion(
     Raises
     ------
     SceneError
-        No phase drives anything, or several do and none is named; no such phase or freedom; ``within`` is not above
-        zero; or the stepwise method.
+        No phase drives anything, or several do and none is named; no such phase or freedom; bodies press in it;
+        ``within`` is not above zero; or the stepwise method.
     """
     expect(scene, Scene, "scene")
     number = _driven_phase(scene, phase)
@@ -90,7 +90,11 @@ def _driven_phase(scene: Scene, phase: str | None) -> int:
         raise SceneError([Problem(("phase",), f"is needed, since several drive a body; give one of: {few(driven)}")])
     name = driven[0] if phase is None else phase
     expect_choice(name, driven, "phase")
-    return [load.name for load in scene.loads].index(name)
+    number = [load.name for load in scene.loads].index(name)
+    if scene.loads[number].press:
+        message = "is of a phase in which bodies press, too, of which an insertion does not know; ask cagepose run"
+        raise SceneError([Problem(("phase",), message)])
+    return number
 
 
 def _across(load: Load) -> tuple[str, ...]:

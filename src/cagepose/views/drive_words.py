@@ -25,7 +25,7 @@ def share_words(share: float) -> str:
 
 def how_far(phase: PhaseRun, length_unit: LengthUnit) -> str:
     """Return how far a phase's drive got, or what presses, to be put behind the verdict; empty: nothing did."""
-    if phase.press is not None:
+    if phase.press is not None and phase.drive is None:
         told = (f"{name} after {_length(body.travel_m, length_unit)}" for name, body in phase.press.bodies.items())
         return f" with what presses ({'; '.join(told)})"
     if phase.drive is None:

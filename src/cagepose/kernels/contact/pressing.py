@@ -9,8 +9,11 @@ from __future__ import annotations
 from typing import Annotated
 
 from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, WRENCH
+from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import Vector, dot, scaled, vector_from
+from cagepose.kernels.contact.loads import PhaseLoad, write_load
+from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.native.kernel import kernel
 
 MOST_PRESSING = MOST_FREEDOMS - WRENCH
@@ -28,12 +31,15 @@ class Pressing:
         Unit vector along which it is pushed, as seen from the middle of the cage, turned as the world is.
     force, stiffness
         How hard, where it is, and how much less for each metre that it goes on.
+    gone
+        How far it has gone along its direction, metres, beside where it is driven.
     """
 
     freedom: int
     direction: Annotated[FloatArray, 3]
     force: float
     stiffness: float
+    gone: float
 
 
 @kernel
@@ -62,14 +68,39 @@ def write_pressed(
 
 
 @kernel
-def write_pressing_load(pressing: Rows[Pressing], out: FloatArray) -> float:
-    """Write the forces of bodies that press behind the load on the object; return their sum."""
-    total = 0.0
-    for body in range(len(pressing)):
+def write_whole_load(
+    load: PhaseLoad,
+    pressing: Rows[Pressing],
+    position: Vector,
+    quaternion: Quaternion,
+    frame: Frame,
+    n_freedoms: int,
+    out: FloatArray,
+) -> float:
+    """Write the load on the object, as `write_load`, and behind it what bodies press with; return the length of all
+    terms.
+    """
+    total = write_load(load, position, quaternion, frame, out)
+    for k in range(WRENCH, n_freedoms):
+        out[k] = 0.0
+    for body in range(len(pressing) if n_freedoms > WRENCH else 0):
         if pressing[body].freedom > 0:
             out[pressing[body].freedom] = pressing[body].force
             total += abs(pressing[body].force)
     return total
+
+
+@kernel
+def press_farther(one: Pressing, way: float) -> None:
+    """Note that a body has gone on so far along its direction, metres."""
+    one.gone += way
+    one.force -= one.stiffness * way
+
+
+@kernel
+def copy_pressing(pressing: Rows[Pressing], out: Rows[Pressing]) -> None:
+    for body in range(len(pressing)):
+        out[body] = pressing[body]  # type: ignore[index]
 
 
 @kernel

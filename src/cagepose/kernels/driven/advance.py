@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import Vector, norm
 from cagepose.kernels.boundary.features import number_of_bodies
 from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.metric import twist_between
-from cagepose.kernels.driven.bodies import move_bodies, seen_from_body
+from cagepose.kernels.contact.pressing import Pressing, copy_pressing
+from cagepose.kernels.driven.bodies import move_bodies, place_bodies, seen_from_body
 from cagepose.kernels.driven.snap import is_inside
 from cagepose.kernels.driven.trial import LITTLE, try_share, write_guards
 from cagepose.kernels.driven.workspace import HITS_LIMIT, DriveSetting, DriveWorkspace
@@ -108,14 +109,16 @@ def met_on_chord(
     end: Vector,
     turned: Quaternion,
     to_share: float,
+    begun: Rows[Pressing],
     work: DriveWorkspace,
 ) -> Hit:
     """Return what the object meets first on the straight way between two rests, as each body sees it, but for what
-    touches already, after a part of the way. The bodies are where they are at the first rest, and the object is placed.
+    touches already, after a part of the way. The bodies are where they are at the first rest, what presses where it had
+    ``begun``, and the object is placed; the second rest is the one tried last.
     """
     setting, first = drive.setting, NO_HIT
     for body in range(number_of_bodies(setting.geometry.cage)):
-        there, there_turned = seen_from_body(work.memory, body, (share, to_share), end, turned)
+        there, there_turned = seen_from_body(work.memory, begun, body, (share, to_share), end, turned)
         velocity, spin = twist_between(position, quaternion, there, there_turned)
         if norm(velocity) + norm(spin) == 0.0:
             continue
@@ -153,6 +156,8 @@ def furthest_share(
     """
     scratch, setting = work.scratch[0], drive.setting
     scratch.n_hits = 0
+    begun = work.run.turned.pressing
+    copy_pressing(work.memory.pressing, begun)
     last = last_of_mode(drive, position, quaternion, share, to_share, work)
     from_share, begin, begin_turned = share, position, quaternion
     end, turned = position, quaternion
@@ -162,9 +167,9 @@ def furthest_share(
         found, end, turned = try_share(drive, position, quaternion, share, last, work)
         if not found:
             return share, position, quaternion
-        move_bodies(setting.geometry, drive.phase, from_share, work.memory)
+        place_bodies(setting.geometry, drive.phase, from_share, work.memory, begun)
         place_object(setting.geometry, begin, begin_turned, work.run.placement)
-        hit = met_on_chord(drive, begin, begin_turned, from_share, end, turned, last, work)
+        hit = met_on_chord(drive, begin, begin_turned, from_share, end, turned, last, begun, work)
         if hit.amount == math.inf:
             break
         if hit.feature >= 0 and note_hit(hit, work):
@@ -173,6 +178,7 @@ def furthest_share(
         # It is not met after all: what is met behind it is looked for from there.
         from_share += max(hit.amount, 0.05) * (last - from_share)
         found, begin, begin_turned = try_share(drive, position, quaternion, share, from_share, work)
+        copy_pressing(work.memory.tried, begun)
         if not found or from_share >= last - SAME_SHARE:
             break
     for _ in range(HALVINGS):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cagepose.kernels.algebra.pose import Quaternion, quaternion_product, rotated
-from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, dtype_of
+from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, dtype_of, empty_rows
 from cagepose.kernels.algebra.vector import (
     Vector,
     cross,
@@ -25,11 +25,12 @@ from cagepose.kernels.algebra.vector import (
     transposed_times,
     vector_from,
 )
-from cagepose.kernels.boundary.features import number_of_bodies
-from cagepose.kernels.boundary.geometry import Geometry
+from cagepose.kernels.boundary.features import number_of_bodies, place_turned
+from cagepose.kernels.boundary.geometry import Geometry, cage_at
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.loads import Action, PhaseLoad, acting, arm_of, spring_vector
 from cagepose.kernels.contact.metric import moved_along_twist
+from cagepose.kernels.contact.pressing import Pressing, press_farther
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.cases import Cases, Start, displacement_of, place_displaced
 
@@ -49,6 +50,8 @@ class DriveMemory(NamedTuple):
         Velocity, spin and length of each leg, (n_bodies, n_legs, 7).
     n_legs
         How many legs each body follows in the phase, (n_bodies,).
+    pressing, tried
+        How each body presses, and how far it has gone so, in the rest that was found last, and in one that is tried.
     limits
         The driver's force along its way at which each body stops, at the beginning, and how it changes for a unit
         share, (n_bodies, 2); inf: at none.
@@ -61,6 +64,8 @@ class DriveMemory(NamedTuple):
     reached: FloatArray
     twists: FloatArray
     n_legs: IntArray
+    pressing: Rows[Pressing]
+    tried: Rows[Pressing]
     limits: FloatArray
     actions: Rows[PhaseLoad]
     anchors: FloatArray
@@ -75,6 +80,8 @@ def empty_drive_memory(n_phases: int, n_bodies: int, n_legs: int, n_actions: int
         np.zeros((n_bodies, 7)),
         np.zeros((n_bodies, n_legs, 7)),
         np.zeros(n_bodies, np.int64),
+        empty_rows(Pressing, n_bodies),
+        empty_rows(Pressing, n_bodies),
         np.full((n_bodies, 2), np.inf),
         np.zeros((n_phases, n_actions), dtype_of(Action)),
         np.zeros((n_phases, n_actions, 3)),
@@ -145,8 +152,10 @@ def begin_phase(phase: int, start: Start, cases: Cases, memory: DriveMemory) -> 
 
 
 @kernel
-def displaced_at(memory: DriveMemory, body: int, share: float) -> tuple[Vector, Quaternion]:
-    """Return how a body is displaced from its place in the scene after a share of the drive."""
+def displaced_at(memory: DriveMemory, pressing: Rows[Pressing], body: int, share: float) -> tuple[Vector, Quaternion]:
+    """Return how a body is displaced from its place in the scene after a share of the drive, and as far as it has gone
+    as it presses.
+    """
     position, quaternion = pose_from(memory.begun[body])
     n_legs = memory.n_legs[body]
     for which in range(n_legs):
@@ -155,18 +164,25 @@ def displaced_at(memory: DriveMemory, body: int, share: float) -> tuple[Vector, 
             spin = (twist[3], twist[4], twist[5])
             velocity = plus(vector_from(twist), cross(spin, position))
             position, quaternion = moved_along_twist(position, quaternion, velocity, spin, amount)
-    return position, quaternion
+    gone = scaled(vector_from(pressing[body].direction), pressing[body].gone)
+    return plus(position, gone), quaternion
 
 
 @kernel
 def move_bodies(geometry: Geometry, phase: int, share: float, memory: DriveMemory) -> None:
     """Place the bodies that are driven where they are after a share of a phase, and the springs that ride on bodies."""
+    place_bodies(geometry, phase, share, memory, memory.pressing)
+
+
+@kernel
+def place_bodies(geometry: Geometry, phase: int, share: float, memory: DriveMemory, pressing: Rows[Pressing]) -> None:
+    """As `move_bodies`, with what presses where it is at a rest, or in a trial."""
     n_bodies = number_of_bodies(geometry.cage)
     if n_bodies == 1:
         return
     for body in range(1, n_bodies):
-        if memory.n_legs[body] > 0:
-            position, quaternion = displaced_at(memory, body, share)
+        if memory.n_legs[body] > 0 or pressing[body].freedom > 0:
+            position, quaternion = displaced_at(memory, pressing, body, share)
             write_pose(memory.reached[body], position, quaternion)
             place_displaced(geometry, body, position, quaternion)
     moved = memory.actions[phase]
@@ -177,6 +193,18 @@ def move_bodies(geometry: Geometry, phase: int, share: float, memory: DriveMemor
             anchor = plus(position, rotated(quaternion, vector_from(memory.anchors[phase, which])))
             for k in range(3):
                 moved[which].anchor[k] = anchor[k]
+
+
+@kernel
+def press_on_by(geometry: Geometry, pressing: Rows[Pressing], motion: FloatArray, amount: float) -> None:
+    """Let bodies that press go on by a part of a scaled motion of all that can move."""
+    for body in range(1, len(pressing)):
+        own = pressing[body].freedom
+        if own > 0:
+            press_farther(pressing[body], amount * motion[own])
+            pose, way = geometry.placed.poses[body], scaled(vector_from(pressing[body].direction), amount * motion[own])
+            rotation = (row(pose, 1), row(pose, 2), row(pose, 3))
+            place_turned(cage_at(geometry, body), plus(row(pose, 0), way), rotation)
 
 
 @kernel
@@ -302,11 +330,18 @@ def add_force(out: FloatArray, force: Vector, place: Vector) -> None:
 
 @kernel
 def seen_from_body(
-    memory: DriveMemory, body: int, shares: tuple[float, float], end: Vector, turned: Quaternion
+    memory: DriveMemory,
+    begun: Rows[Pressing],
+    body: int,
+    shares: tuple[float, float],
+    end: Vector,
+    turned: Quaternion,
 ) -> tuple[Vector, Quaternion]:
-    """Return a pose after the second share as a body sees it that has stayed where it was after the first one."""
-    position, quaternion = displaced_at(memory, body, shares[0])
-    later, later_turned = displaced_at(memory, body, shares[1])
+    """Return a pose after the second share as a body sees it that has stayed where it was after the first one, which is
+    where what presses had ``begun``; it is now as in a trial.
+    """
+    position, quaternion = displaced_at(memory, begun, body, shares[0])
+    later, later_turned = displaced_at(memory, memory.tried, body, shares[1])
     back = (later_turned[0], -later_turned[1], -later_turned[2], -later_turned[3])
     by = quaternion_product(quaternion, back)
     return plus(position, rotated(by, minus(end, later))), quaternion_product(by, turned)

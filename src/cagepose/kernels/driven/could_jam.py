@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, length
+from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, WRENCH, length
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, norm
 from cagepose.kernels.contact.contact_set import ContactSet, choose
@@ -50,6 +50,8 @@ def gather_drives(
     if not with_support:
         return True
     write_load_rate(drive.setting.load, position, quaternion, frame, share, work.memory, scratch.beside)
+    for k in range(WRENCH, n):
+        scratch.beside[k] = 0.0
     grows = length(scratch.beside, n)
     if grows > 0.0:
         for body in range(len(work.memory.n_legs)):

@@ -6,12 +6,14 @@ from __future__ import annotations
 
 import math
 
+from cagepose.kernels.algebra.least_squares import WRENCH
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, norm
 from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.edges import EVERY, first_choice, has_one_choice, next_choice
 from cagepose.kernels.contact.loads import total_load
 from cagepose.kernels.contact.metric import way_between
+from cagepose.kernels.contact.pressing import copy_pressing
 from cagepose.kernels.driven.advance import furthest_share, met_on_chord
 from cagepose.kernels.driven.bodies import (
     is_driven_by,
@@ -205,7 +207,10 @@ def drive_on(
         if stands_still(drive, position, share, work):
             slack = slack_at(share, work.memory)
             to_share = min(longest_advance(fastest_turn(share, work), share, ends), slack)
-            hit = met_on_chord(drive, position, quaternion, share, position, quaternion, to_share, work)
+            copy_pressing(work.memory.pressing, work.memory.tried)
+            hit = met_on_chord(
+                drive, position, quaternion, share, position, quaternion, to_share, work.memory.pressing, work
+            )
             reached = to_share if hit.amount == math.inf else share + hit.amount * (to_share - share)
             write_state(run.trace.rows[step], here)
             move_bodies(setting.geometry, drive.phase, reached, work.memory)
@@ -235,6 +240,8 @@ def drive_on(
         if reached - share > LEAST_ADVANCE or (is_mode and reached > share and n_still < STILL_LIMIT):
             write_state(run.trace.rows[step], here)
             add_work(drive, position, quaternion, share, end, turned, reached, work)
+            copy_pressing(work.memory.tried, work.memory.pressing)
+            move_bodies(setting.geometry, drive.phase, reached, work.memory)
             same = find_rested(drive, end, turned, work)
             moved = way_between(position, quaternion, end, turned, setting.body.reach_m) > 0.0
             write_driven(drive, step, reached, end, turned, moved, work)
@@ -258,6 +265,9 @@ def drive_on(
             goes_on = False
             continue
         return_to_mode(work)
+        if run.contacts.n_freedoms > WRENCH:  # an ordinary run knows the object's freedoms alone
+            verdict = stopped_verdict(drive, position, quaternion, share, work)
+            return STALLED if verdict == OPENS else verdict, step, here, share
         verdict, step, after, share = leave_rest(drive, here, share, to_share, step, step_limit, work)
         if verdict != RESTS:
             return verdict, step, after, share

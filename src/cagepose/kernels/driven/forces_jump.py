@@ -127,22 +127,23 @@ def leaves_cone(forces: FloatArray, rates: FloatArray, friction: float) -> float
 
 
 @kernel
-def write_rates_apart(drive: DriveSetting, work: DriveWorkspace) -> bool:
-    """Write how the forces rise and fall where what carries cannot go with its bodies, a row for each contact; False:
-    it can. Of contacts without a force those count that would close.
+def write_rates_apart(drive: DriveSetting, work: DriveWorkspace) -> tuple[bool, bool]:
+    """Write how the forces rise and fall where what carries cannot go with its bodies, a row for each contact; return
+    (whether it cannot, whether other contacts carry now). Of contacts without a force those count that would close.
     """
     newton, friction = work.scratch[0].rest.newton, drive.setting.friction.greatest
-    fastest = hardest = 0.0
+    fastest, hardest, changed = 0.0, 0.0, False
     for _ in range(ROUNDS):
         fastest, hardest = write_presses(friction, work)
         if hardest <= AGREE * fastest or not count_closing(friction, SAME * fastest, work):
             break
+        changed = True
     for place in range(newton.n_carrying):
         for which in range(3 if newton.modes[place] == STICKS else 1):
             presses = newton.matrix[place, which]
             size = length(work.run.contacts.rows[newton.contacts[place]].columns[0], work.run.contacts.n_freedoms)
             newton.matrix[place, which] = presses / size if abs(presses) > SAME * hardest else 0.0
-    return hardest > AGREE * fastest
+    return hardest > AGREE * fastest, changed
 
 
 @kernel
@@ -188,7 +189,8 @@ def write_rates_to_trial(work: DriveWorkspace) -> None:
 
 @kernel
 def gives_way(drive: DriveSetting, found: bool, work: DriveWorkspace) -> bool:
-    """Let forces change until the first of the contacts that carry opens or slips, and let it do so; False: none does.
+    """Let forces change until the first of the contacts that carry opens or slips, and let it do so; False: none does,
+    and the same contacts carry.
 
     Given: the contacts of ``work.run``, with their drifts, and what they do in a trial; whether that was ``found``:
     then forces change to those of the trial, and else as what carries presses on each other.
@@ -197,8 +199,10 @@ def gives_way(drive: DriveSetting, found: bool, work: DriveWorkspace) -> bool:
     rates, amount, greatest, is_first = rest.newton.matrix, math.inf, 0.0, True
     if found:
         write_rates_to_trial(work)
-    elif not write_rates_apart(drive, work):
-        return False
+    else:
+        is_apart, changed = write_rates_apart(drive, work)
+        if not is_apart:
+            return changed
     for place in range(rest.newton.n_carrying):
         amount = min(amount, lasts(drive, place, work)[0])
         greatest = max(greatest, contacts.states[rest.newton.contacts[place]].forces[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cagepose.kernels.algebra.least_squares import WRENCH
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.contact.loads import total_load, work_done
@@ -44,6 +45,10 @@ def write_driven(
     write_step(run, step, DRIVEN, SCREW if moved else NONE, False, position, quaternion)
     record = run.trace.rows[step]
     record.share = share
+    for body in range(len(work.memory.pressing)):
+        one = work.memory.pressing[body]
+        if one.freedom > 0:
+            record.pressed[one.freedom - WRENCH] = one.gone
     record.driving = write_drivers(
         run.contacts, position, quaternion, drive.setting.load, share - APART, work.memory, work.drivers
     )
@@ -96,6 +101,9 @@ def add_work(
     move_bodies(geometry, drive.phase, to_share, memory)
     rises = energy_of_riding(load, position, quaternion) - at_start
     rises -= work_done(load, position, quaternion, end, turned)
+    for body in range(len(memory.pressing)):
+        was, now = memory.pressing[body], memory.tried[body]
+        rises -= 0.5 * (was.force + now.force) * (now.gone - was.gone)
     rubbed = 0.0
     for place in range(rest.newton.n_carrying):
         i = rest.newton.contacts[place]

@@ -14,7 +14,10 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, dot, vector_from
 from cagepose.kernels.boundary.features import number_of_bodies
 from cagepose.kernels.boundary.geometry import Geometry
-from cagepose.kernels.contact.metric import way_between
+from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.equilibrium import AT_REST, equilibrium
+from cagepose.kernels.contact.metric import frame_at, way_between
+from cagepose.kernels.contact.pressing import copy_pressing, number_pressing, write_whole_load
 from cagepose.kernels.driven.bodies import move_bodies, pose_from, write_drivers
 from cagepose.kernels.driven.drive import drive_on
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
@@ -24,7 +27,8 @@ from cagepose.kernels.outcome.presses import press_at
 from cagepose.kernels.outcome.trace import BLOCKED, ESCAPES, JAMS, LIMIT, NONE, RESTS, STALLED
 from cagepose.kernels.quasistatic.run import steps_from
 from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.quasistatic.step import HELD, State, note_touching, stand_at, write_state, write_step
+from cagepose.kernels.quasistatic.step import HELD, STUCK, State, note_touching, stand_at, write_state, write_step
+from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 from cagepose.kernels.stability.proof import are_balanced, with_all_freedoms
 
 ENOUGH = 1e-9
@@ -183,3 +187,64 @@ def press_on(
         else:
             break
     return STALLED, step, here, done
+
+
+@kernel
+def with_pressing(work: DriveWorkspace) -> DriveWorkspace:
+    """Return a workspace whose contacts are asked with the freedoms of the bodies that press, where they are in memory
+    at a rest, and in a trial.
+    """
+    run, memory = work.run, work.memory
+    n = WRENCH + number_pressing(memory.pressing)
+    copy_pressing(memory.pressing, memory.tried)
+    copy_pressing(memory.pressing, run.turned.pressing)
+    contacts, ahead, turned = run.contacts, run.ahead, run.turned
+    asked = QuasistaticWorkspace(
+        run.placement,
+        ContactSet(contacts.used, contacts.rows, contacts.states, contacts.bends, memory.pressing, n),
+        ContactSet(ahead.used, ahead.rows, ahead.states, ahead.bends, memory.tried, n),
+        ContactSet(turned.used, turned.rows, turned.states, turned.bends, turned.pressing, n),
+        run.scratch,
+        run.path,
+        run.touched,
+        run.trace,
+        run.cage,
+        run.proof,
+    )
+    return DriveWorkspace(asked, memory, work.scratch, work.low, work.high, work.middle, work.drivers)
+
+
+@kernel
+def drive_pressed(
+    drive: DriveSetting, cases: Cases, state: State, step_limit: int, work: DriveWorkspace
+) -> tuple[int, int, State, float]:
+    """Drive bodies while others, or they themselves, press, from a rest of all; return (verdict code, number of steps,
+    state, share). All that presses goes on with the object: a rest has as many freedoms more.
+    """
+    setting, memory, solver = drive.setting, work.memory, work.run.scratch[0].solver
+    is_rest = is_balanced(setting, state.position, state.quaternion, work)
+    copy_pressing(work.run.proof.contacts.pressing, memory.pressing)
+    asked = with_pressing(work)
+    frame, contacts = frame_at(setting.body, state.quaternion), asked.run.contacts
+    is_rest = stand_at(setting, state.position, state.quaternion, asked.run) and is_rest
+    note_touching(asked.run)
+    write_state(asked.run.trace.rows[0], state)
+    write_step(asked.run, 0, HELD if is_rest else STUCK, NONE, False, state.position, state.quaternion)
+    verdict, step, here, share = STALLED, 1, state, 0.0
+    if is_rest:
+        solver.load_terms = write_whole_load(
+            setting.load,
+            memory.pressing,
+            state.position,
+            state.quaternion,
+            frame,
+            contacts.n_freedoms,
+            solver.load,
+        )
+        equilibrium(contacts, frame, setting.friction.greatest, AT_REST, solver)
+        verdict, step, here, share = drive_on(drive, state, 1, step_limit, asked)
+    move_bodies(setting.geometry, drive.phase, share, memory)
+    begin_pressing(setting.geometry, cases, drive.phase, work)
+    for body in range(len(memory.pressing)):
+        memory.pressing[body].freedom, memory.pressing[body].gone = 0, 0.0
+    return verdict, step, here, share

@@ -16,17 +16,18 @@ import math
 from cagepose.kernels.algebra.dense import add_across, cholesky, frobenius_norm, solve_lower, solve_upper
 from cagepose.kernels.algebra.least_squares import WRENCH, append_column, clear, inner, length
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.record import FloatArray
+from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.contact.cone import clear_cone, cone_residual, write_forces
 from cagepose.kernels.contact.contact_set import ContactSet, count_chosen, is_smooth
 from cagepose.kernels.contact.coulomb import coulomb_error
 from cagepose.kernels.contact.curvature import clear_matrix, write_curvature
-from cagepose.kernels.contact.loads import PhaseLoad, arm_of, spring_vector, write_load
+from cagepose.kernels.contact.loads import PhaseLoad, arm_of, spring_vector
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, write_scaled_wrench
 from cagepose.kernels.contact.on_circle import keeps_on_circle
 from cagepose.kernels.contact.onset import motion_with_faces
-from cagepose.kernels.driven.bodies import DriveMemory, move_bodies, twist_of_body, write_drift
+from cagepose.kernels.contact.pressing import Pressing, write_whole_load
+from cagepose.kernels.driven.bodies import DriveMemory, place_bodies, twist_of_body, write_drift
 from cagepose.kernels.driven.rest_of_mode import follow_contact
 from cagepose.kernels.driven.workspace import DriveScratch, DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -83,6 +84,7 @@ def write_change(
     frame: Frame,
     share: float,
     apart: float,
+    pressing: Rows[Pressing],
     work: DriveWorkspace,
 ) -> None:
     """Write how the balance b - A f changes for a unit share where the object stands still, from the bodies at their
@@ -90,7 +92,9 @@ def write_change(
     """
     setting, other, change = drive.setting, work.run.turned, work.scratch[0].change
     write_load_rate(setting.load, position, quaternion, frame, share + min(apart, 0.0), work.memory, change)
-    move_bodies(setting.geometry, drive.phase, share + apart, work.memory)
+    for k in range(WRENCH, contacts.n_freedoms):
+        change[k] = 0.0
+    place_bodies(setting.geometry, drive.phase, share + apart, work.memory, pressing)
     for i in range(contacts.used[0]):
         row, forces = contacts.rows[i], contacts.states[i].forces
         if forces[0] == 0.0 or work.memory.n_legs[row.cage_body] == 0:
@@ -98,9 +102,9 @@ def write_change(
         copy_contact(contacts, i, other, i)
         if follow_contact(setting.geometry, work.run.placement, other, i, position, quaternion, frame).is_one:
             for j in range(3):
-                for k in range(WRENCH):
+                for k in range(contacts.n_freedoms):
                     change[k] -= forces[j] * (other.rows[i].columns[j, k] - row.columns[j, k]) / apart
-    move_bodies(setting.geometry, drive.phase, share, work.memory)
+    place_bodies(setting.geometry, drive.phase, share, work.memory, pressing)
 
 
 @kernel
@@ -193,8 +197,11 @@ def solve_rate(
     count_chosen(contacts)
     for i in range(contacts.used[0]):
         write_drift(contacts, i, position, share, work.memory)
-    terms = max(write_load(setting.load, position, quaternion, frame, scratch.load), scratch.rest.least_terms)
-    write_change(drive, contacts, position, quaternion, frame, share, APART, work)
+    whole = write_whole_load(
+        setting.load, contacts.pressing, position, quaternion, frame, contacts.n_freedoms, scratch.load
+    )
+    terms = max(whole, scratch.rest.least_terms)
+    write_change(drive, contacts, position, quaternion, frame, share, APART, work.memory.pressing, work)
     write_curvature(contacts, setting.load, position, quaternion, frame, False, scratch.stiffness)
     go_with_bodies(contacts, False, scratch)
     rho = RHO * terms / setting.size_m

@@ -17,7 +17,7 @@ from typing import Annotated
 
 from cagepose.kernels.algebra.dense import frobenius_norm
 from cagepose.kernels.algebra.elimination import eliminate
-from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, inner, length
+from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, WRENCH, inner, length
 from cagepose.kernels.algebra.pose import Quaternion, matrix_from_quaternion
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, minus, norm, vector_from
@@ -37,8 +37,9 @@ from cagepose.kernels.contact.coulomb_newton import (
     n_forces,
 )
 from cagepose.kernels.contact.curvature import write_curvature
-from cagepose.kernels.contact.loads import write_load
 from cagepose.kernels.contact.metric import Frame, ScaledVector, frame_at, moved_along_twist, twist_of
+from cagepose.kernels.contact.pressing import write_whole_load
+from cagepose.kernels.driven.bodies import press_on_by
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.pushing_out import is_fixed
 from cagepose.kernels.quasistatic.setting import Setting
@@ -249,7 +250,7 @@ def rest_of_mode(
     Parameters
     ----------
     setting
-        With the load as it is.
+        With the load as it is. What presses goes on with the object.
     placement
         Memory, with the bodies of the cage where they are.
     contacts
@@ -272,7 +273,10 @@ def rest_of_mode(
             if work.newton.modes[place] == STICKS:
                 slipped_m = math.sqrt(work.slips[place, 0] ** 2 + work.slips[place, 1] ** 2)
                 worst_m = max(worst_m, slipped_m * ON_FACE / STUCK)
-        terms = max(write_load(setting.load, position, quaternion, frame, work.load), work.least_terms)
+        whole = write_whole_load(
+            setting.load, contacts.pressing, position, quaternion, frame, contacts.n_freedoms, work.load
+        )
+        terms = max(whole, work.least_terms)
         write_curvature(contacts, setting.load, position, quaternion, frame, False, work.curvature)
         work.least_stiffness = LEAST_STIFFNESS * terms / setting.size_m
         stiff = write_system(contacts, friction, work.least_stiffness, n, work)
@@ -286,5 +290,7 @@ def rest_of_mode(
         least_worst = min(least_worst, worst)
         take_step(contacts, friction, stiff, n, work)
         velocity, spin = twist_of(work.delta, frame)
+        if contacts.n_freedoms > WRENCH:
+            press_on_by(setting.geometry, contacts.pressing, work.delta, 1.0)
         position, quaternion = moved_along_twist(position, quaternion, velocity, spin, 1.0)
     return done, position, quaternion

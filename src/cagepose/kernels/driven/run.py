@@ -14,7 +14,7 @@ from cagepose.kernels.boundary.overlap import forget_shells
 from cagepose.kernels.contact.pressing import number_pressing
 from cagepose.kernels.driven.bodies import begin_drives, begin_phase, move_bodies, write_displacement, write_drivers
 from cagepose.kernels.driven.drive import drive_on
-from cagepose.kernels.driven.press import begin_pressing, press_on
+from cagepose.kernels.driven.press import begin_pressing, drive_pressed, press_on
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import entry, kernel
 from cagepose.kernels.outcome.cases import Cases, Part, Start, is_valid, start_of
@@ -53,7 +53,11 @@ def phase_from(
     )
     work.scratch[0].greatest = work.scratch[0].least_jam = math.nan  # of what is not driven
     if number_pressing(work.run.proof.contacts.pressing) > 0:
-        verdict, n_steps, end, share = press_on(setting, cases, phase, state, rules.step_limit, work)
+        if is_driven:
+            drive = DriveSetting(setting, phase, cases.drives.stop_at[phase])
+            verdict, n_steps, end, share = drive_pressed(drive, cases, state, rules.step_limit, work)
+        else:
+            verdict, n_steps, end, share = press_on(setting, cases, phase, state, rules.step_limit, work)
         return verdict, n_steps, end.position, end.quaternion, share
     verdict, n_steps, end = steps_from(setting, state, 0, rules.step_limit, work.run)
     share = 0.0
@@ -105,7 +109,7 @@ def publish_drive(
     record.share = share
     record.driving = record.greatest = record.greatest_at = record.work = record.rubbed = record.lost = 0.0
     record.least_jam = math.inf
-    if number_pressing(work.run.proof.contacts.pressing) > 0:
+    if number_pressing(work.run.proof.contacts.pressing) > 0 and not is_driven:
         publish_pressing(phase, position, quaternion, start, work, outcome)
         return
     if not is_driven or (share == 0.0 and record.verdict not in (BLOCKED, JAMS, STOPS)):
@@ -137,14 +141,9 @@ def publish_pressing(
     phase: int, position: Vector, quaternion: Quaternion, start: Start, work: DriveWorkspace, outcome: Outcome
 ) -> None:
     """Write what pushes each body that presses, its guide's forces too, in balance with the contacts of the proof."""
-    proof, drivers = work.run.proof.contacts, outcome.drivers[phase]
-    record = outcome.phases[phase]
-    if record.verdict != RESTS:
-        return
-    write_drivers(proof, position, quaternion, start.actions[phase], 0.0, work.memory, drivers)
-    for body in range(len(drivers)):
-        one = proof.pressing[body]
-        drivers[body, 6] = one.force if one.freedom > 0 else 0.0
+    if outcome.phases[phase].verdict == RESTS:
+        load, drivers = start.actions[phase], outcome.drivers[phase]
+        write_drivers(work.run.proof.contacts, position, quaternion, load, 0.0, work.memory, drivers)
 
 
 @kernel

@@ -15,8 +15,8 @@ from cagepose.kernels.contact.cone import write_forces
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.coulomb_newton import SLIDES
 from cagepose.kernels.contact.curvature import add_face_curvature, clear_matrix
-from cagepose.kernels.contact.loads import write_load
 from cagepose.kernels.contact.metric import frame_at
+from cagepose.kernels.contact.pressing import write_whole_load
 from cagepose.kernels.driven.could_jam import gather_drives
 from cagepose.kernels.driven.stiffness import STABLE, hold_carried, least_stiffness
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
@@ -80,7 +80,7 @@ def is_jammed(drive: DriveSetting, position: Vector, quaternion: Quaternion, wor
             row.columns[j, n], row.drift[j] = row.drift[j] / fastest, 0.0
     driven = ContactSet(turned.used, turned.rows, turned.states, turned.bends, turned.pressing, n + 1)
     frame = frame_at(drive.setting.body, quaternion)
-    terms = write_load(drive.setting.load, position, quaternion, frame, scratch.load)
+    terms = write_whole_load(drive.setting.load, turned.pressing, position, quaternion, frame, n, scratch.load)
     for k in range(n):
         scratch.beside[k] = 0.0
         scratch.load[k] = scratch.load[k] / terms if terms > 0.0 else 0.0

@@ -13,10 +13,12 @@ from cagepose.kernels.boundary.geometry import cage_at, held_moved
 from cagepose.kernels.boundary.met import Meeting
 from cagepose.kernels.contact.coulomb_newton import CARRYING_LIMIT, SLIPS, STICKS, n_forces
 from cagepose.kernels.contact.metric import frame_at, moved_along_twist, twist_of, way_between
+from cagepose.kernels.contact.pressing import copy_pressing
 from cagepose.kernels.driven.bodies import (
     has_limit,
     left_to_limit,
     move_bodies,
+    press_on_by,
     twist_of_body,
     write_drift,
     write_drivers,
@@ -77,6 +79,7 @@ def begin_trial(drive: DriveSetting, share: float, ahead: float, work: DriveWork
     still = (0.0, 0.0, 0.0)
     slow = NO_SLIP * max(speed_of(contacts, way), fastest_of(drive, share, still, still, work))
     trial.used[0] = contacts.used[0]
+    copy_pressing(work.memory.pressing, work.memory.tried)
     for i in range(contacts.used[0]):
         copy_contact(contacts, i, trial, i)
     list_carrying(trial, drive.setting.friction.greatest, rest)
@@ -118,6 +121,7 @@ def go_on(
     """
     setting, trial, rest, ahead = drive.setting, work.run.ahead, work.scratch[0].rest, to_share - share
     velocity, spin = twist_of(work.scratch[0].way, frame_at(setting.body, quaternion))
+    press_on_by(setting.geometry, work.memory.tried, work.scratch[0].way, ahead)
     if norm(velocity) + norm(spin) == 0.0:
         return position, quaternion
     end, turned = moved_along_twist(position, quaternion, velocity, spin, ahead)
@@ -189,7 +193,7 @@ def write_way(
         n += n_forces(rest.newton.modes[place])
     for i in range(trial.used[0]):
         write_drift(trial, i, position, share + min(apart, 0.0), work.memory)
-    write_change(drive, trial, position, quaternion, frame, share, apart, work)
+    write_change(drive, trial, position, quaternion, frame, share, apart, work.memory.tried, work)
     stiff = write_system(trial, setting.friction.greatest, rest.least_stiffness, n, rest)
     newton = rest.newton
     for k in range(n_freedoms):

@@ -22,7 +22,7 @@ def press_at(press: Press, geometry: Geometry, position: Vector, quaternion: Qua
     origin = plus(row(still, 0), times(turned, vector_from(press.origin)))
     gone = dot(direction, minus(plus(position, rotated(quaternion, origin)), origin))
     out.freedom, out.stiffness = press.freedom, press.stiffness
-    out.force = press.force - press.stiffness * gone
+    out.force, out.gone = press.force - press.stiffness * gone, 0.0
     for k in range(3):
         out.direction[k] = direction[k]
 

@@ -29,10 +29,10 @@ from cagepose.kernels.contact.equilibrium import (
 )
 from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.friction import Friction
-from cagepose.kernels.contact.loads import PhaseLoad, write_load
+from cagepose.kernels.contact.loads import PhaseLoad
 from cagepose.kernels.contact.metric import Body, Frame, ScaledVector, frame_at
 from cagepose.kernels.contact.on_circle import drop_idle
-from cagepose.kernels.contact.pressing import number_pressing, write_pressing_load
+from cagepose.kernels.contact.pressing import number_pressing, write_whole_load
 from cagepose.kernels.contact.self_stress import forget_locked, write_locked
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -133,9 +133,10 @@ def stand_at(
     frame = frame_at(body, quaternion)
     place_object(geometry, position, quaternion, at.placement)
     solver = at.scratch[0].solver
-    solver.load_terms = write_load(load, position, quaternion, frame, solver.load)
-    if at.contacts.n_freedoms > WRENCH:
-        solver.load_terms += write_pressing_load(at.contacts.pressing, solver.load)
+    contacts = at.contacts
+    solver.load_terms = write_whole_load(
+        load, contacts.pressing, position, quaternion, frame, contacts.n_freedoms, solver.load
+    )
     return find_contacts(geometry, at.placement, friction, position, frame, at.contacts)
 
 
