@@ -17,7 +17,7 @@ from cagepose.kernels.driven.stiffness import hold_carried, least_stiffness
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import ESCAPES, LIMIT, RESTS
-from cagepose.kernels.quasistatic.first_contact import Twist
+from cagepose.kernels.quasistatic.first_contact import Twist, first_contact
 from cagepose.kernels.quasistatic.path import Path, on_faces
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts
 from cagepose.kernels.quasistatic.run import steps_from
@@ -123,6 +123,9 @@ def snaps(
                 along = Twist(scaled(velocity, side / speed), scaled(spin, side / speed), push_m)
                 allow_depths(setting.geometry, run.placement, setting.tolerances, run.path)
                 constrain_contacts(run.contacts, setting.tolerances.rounding_m, run.path.constraints)
+                met = first_contact(setting, run.placement, run.contacts, begin, turned, along, 0.0)
+                if met.feature >= 0:  # a push may not lead through a wall
+                    continue
                 done, begin, turned = on_faces(setting, Path(begin, turned, along), push_m, run)
                 if not done or is_inside(drive, begin, turned, work):
                     continue
