@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from cagepose import Box, Cage, CageBody, Capsule, Convex, Load, Object, Pose, Press, Scene, Sphere
+from cagepose import Box, Cage, CageBody, Capsule, Convex, Drive, Load, Object, Pose, Press, Scene, Sphere
 from cagepose.model.checks import FloatArray
 
 ALONG_Y = Pose((0.0, 0.0, 0.0), euler_zyx=(math.pi / 2.0, 0.0, 0.0))
@@ -64,3 +64,51 @@ def polygon(seed: int) -> FloatArray:
     rng = np.random.default_rng(seed)
     angles = np.sort(rng.uniform(0.0, 2.0 * np.pi, rng.integers(4, 9)))
     return 0.008 * np.stack([np.cos(angles), rng.uniform(0.5, 1.0) * np.sin(angles)], axis=1)
+
+
+def lift(shape: Box | Sphere, *, lift_m: float = 0.02) -> Scene:
+    """A jaw presses a part of 45 g on a table against another one, both lift it, and then it hangs between them."""
+    table = Box((0.06, 0.06, 0.01), Pose((0.0, 0.0, -0.009)), "table")
+    bodies = [
+        CageBody(f"{name} jaw", shapes=[Box((0.01, 0.03, 0.03), Pose((x, 0.0, 0.011)), f"{name} face")])
+        for name, x in (("left", -0.009), ("right", 0.012))
+    ]
+    press, weight = {"right jaw": Press((-1.0, 0.0, 0.0), 12.0)}, (0.0, 0.0, -9.81)
+    up = {f"{name} jaw": Drive((0.0, 0.0, lift_m)) for name, _ in SIDES}
+    loads = [
+        Load("close", gravity=weight, press=press),
+        Load("lift", gravity=weight, press=press, drive=up),
+        Load("hold", gravity=weight, press=press),
+    ]
+    part = Object(shapes=[shape], mass_kg=0.045)
+    return Scene(part, Cage(shapes=[table], bodies=bodies), loads, friction_coefficient=0.7)
+
+
+def plunger(angle_deg: float, force_n: float, stiffness_n_per_m: float, way_m: float = 0.01) -> Scene:
+    """A ramp on a smooth floor is pushed under the ball of a plunger, which presses it down and gives way."""
+    rise, radius = math.tan(math.radians(angle_deg)), 0.002
+    outline = [(-0.03, 0.0), (0.03, 0.0), (0.03, 0.01), (-0.03, 0.01 + 0.06 * rise)]
+    ramp = Object(shapes=[Convex([(x, y, z) for x, z in outline for y in (-0.01, 0.01)], name="ramp")], mass_kg=0.1)
+    floor = Box((0.4, 0.2, 0.02), Pose((0.0, 0.0, -0.01)), "floor")
+    walls = [Box((0.4, 0.02, 0.1), Pose((0.0, y, 0.05)), name) for name, y in (("front", -0.02), ("back", 0.02))]
+    high = 0.01 + 0.03 * rise + radius / math.cos(math.radians(angle_deg))
+    bodies = [
+        CageBody("plunger", shapes=[Sphere(radius, name="tip")], pose=Pose((0.0, 0.0, high))),
+        CageBody("pusher", shapes=[Box((0.01, 0.02, 0.008), Pose((-0.035, 0.0, 0.005)), "pad")]),
+    ]
+    press, weight = {"plunger": Press((0.0, 0.0, -1.0), force_n, stiffness_n_per_m)}, (0.0, 0.0, -9.81)
+    loads = [
+        Load("settle", gravity=weight, press=press),
+        Load("push", gravity=weight, press=press, drive={"pusher": Drive((way_m, 0.0, 0.0))}),
+    ]
+    return Scene(ramp, Cage(shapes=[floor, *walls], bodies=bodies), loads)
+
+
+def vise(friction: float) -> Scene:
+    """A block without weight lies askew before a fixed jaw, and another one presses it on that."""
+    block = Box((0.02, 0.03, 0.01), name="block")
+    part = Object([block], mass_kg=0.1, pose=Pose((-0.003, 0.0, 0.0), euler_zyx=(math.radians(20.0), 0.0, 0.0)))
+    faces = [Box((0.01, 0.04, 0.02), Pose((side * 0.025, 0.0, 0.0)), f"{name} face") for name, side in SIDES]
+    cage = Cage(shapes=[faces[0]], bodies=[CageBody("jaw", shapes=[faces[1]])])
+    load = Load("close", press={"jaw": Press((-1.0, 0.0, 0.0), 12.0)})
+    return Scene(part, cage, [load], friction_coefficient=friction)

@@ -7,9 +7,28 @@ import math
 import numpy as np
 import pytest
 
-from cagepose import Capsule, Run, Sphere, certificate, check_certificate, run, with_critical_friction
+from cagepose import (
+    Box,
+    Capsule,
+    Drive,
+    Load,
+    Press,
+    Run,
+    SceneError,
+    Sphere,
+    certificate,
+    check_certificate,
+    load_run,
+    press_limits,
+    run,
+    save_run,
+    with_critical_friction,
+)
+from cagepose.files.record import record_of
 from cagepose.runs.driven import BodyRun
-from driven.pressed_scenes import ALONG_Y, grip, jaws, polygon, ramp
+from cagepose.runs.driven_cage import cage_at
+from cagepose.runs.replay import replay_event
+from driven.pressed_scenes import ALONG_Y, grip, jaws, lift, plunger, polygon, ramp, vise
 
 WEIGHT = 0.045 * 9.81
 
@@ -87,3 +106,101 @@ def test_jaws_that_press_hold_a_polygon_with_their_force(seed: int):
     proof = certificate(found)
     assert proof is not None
     assert check_certificate(proof, found).uniqueness == "strong"
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.05, 0.15, 0.3])
+def test_a_jaw_turns_a_block_without_weight_until_it_is_flat(friction: float):
+    """Its faces are 20 mm apart then: nothing but the jaw moves it, and no force holds it on the way."""
+    found = run(vise(friction))
+    assert found.verdict == "rests"
+    assert pressed(found, "jaw").travel_m == pytest.approx(0.02, abs=1e-9)
+    assert found.pose.euler_zyx[0] == pytest.approx(0.0, abs=1e-7)
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.7])
+def test_the_least_grip_is_the_weight_over_twice_the_friction(friction: float):
+    ((least, greatest),) = press_limits(run(grip(Sphere(0.004, name="ball"), friction=friction))).values()
+    assert least == pytest.approx(0.5 * WEIGHT / friction, rel=1e-7)
+    assert greatest == math.inf
+
+
+def test_what_rubs_on_a_wedge_holds_it_between_two_forces():
+    """A ball between a wall and a wedge slides on the wall, where it is pressed less, and rolls on the wedge. Nothing
+    turns it, so that it rubs on both alike, down as it goes up.
+    """
+    sine, cosine = math.sin(math.radians(30.0)), math.cos(math.radians(30.0))
+    ((least, greatest),) = press_limits(run(ramp(30.0, 6.0, friction=0.1))).values()
+    forces = []
+    for rubs in (-0.1, 0.1):  # N of the wall, M of the wedge: N = M sin + rubs N cos, M cos = 10 + rubs N (1 + sin)
+        matrix = np.array([[1.0 - rubs * cosine, -sine], [-rubs * (1.0 + sine), cosine]])
+        forces.append(float(np.linalg.solve(matrix, [0.0, 10.0])[0]))
+    assert (least, greatest) == pytest.approx(tuple(forces), rel=1e-7)
+
+
+@pytest.mark.parametrize("shape", [Sphere(0.004, name="part"), Box((0.008, 0.008, 0.008), name="part")], ids=str)
+def test_jaws_close_and_lift(shape: Box | Sphere):
+    found = run(lift(shape))
+    assert [phase.verdict in ("rests", "may rest") for phase in found.phases] == [True] * 3
+    lifted = found.phases[1]
+    assert lifted.drive is not None
+    assert lifted.drive.share == 1.0
+    assert lifted.drive.along == pytest.approx(WEIGHT, rel=1e-9)
+    assert lifted.drive.work_j == pytest.approx(0.02 * WEIGHT, rel=1e-9)
+    assert lifted.pose.position_m == pytest.approx((0.0, 0.0, 0.02), abs=1e-12)
+    assert lifted.press is not None
+    assert lifted.press.bodies["right jaw"].travel_m == pytest.approx(0.0, abs=1e-12)
+    assert found.phases[2].pose.position_m == pytest.approx((0.0, 0.0, 0.02), abs=1e-12)
+
+
+@pytest.mark.parametrize("angle_deg", [10.0, 30.0])
+@pytest.mark.parametrize("stiffness", [0.0, 1000.0])
+def test_a_plunger_gives_way_to_a_ramp(angle_deg: float, stiffness: float):
+    """The pusher needs what presses times the tangent, and its work is what the plunger takes up."""
+    rise = 0.01 * math.tan(math.radians(angle_deg))
+    found = run(plunger(angle_deg, 5.0, stiffness))
+    drive, force = found.phases[1].drive, 5.0 + stiffness * rise
+    assert found.verdict == "rests"
+    assert drive is not None
+    assert drive.along == pytest.approx(force * math.tan(math.radians(angle_deg)), rel=1e-9)
+    assert drive.work_j == pytest.approx(5.0 * rise + 0.5 * stiffness * rise**2, rel=1e-9)
+    assert pressed(found, "plunger").travel_m == pytest.approx(-rise, abs=1e-12)
+    assert pressed(found, "plunger").along == pytest.approx(force, rel=1e-9)
+
+
+def test_what_presses_is_saved_and_seen_where_it_was(tmp_path):
+    found = run(lift(Sphere(0.004, name="ball")))
+    save_run(found, tmp_path / "run.json")
+    kept = load_run(tmp_path / "run.json")
+    assert record_of(kept) == record_of(found)
+    frames = list(found.frames())
+    assert [frame.share for frame in frames if frame.phase_index == 0][-1] == 1.0
+    shares = [frame.share for frame in frames if frame.phase_index == 1]
+    assert shares == sorted(shares)
+    assert cage_at(kept, 1, 1.0).displaced[2].position_m == pytest.approx((-0.003, 0.0, 0.02), abs=1e-12)
+    again = replay_event(found, 0, 1)
+    assert again.share == found.phases[0].events[1].share == 1.0
+
+
+TOWARDS = (-1.0, 0.0, 0.0)
+WRONG = {
+    "no direction": (lambda: Press((0.0, 0.0, 0.0), 12.0), "along: is zero, so it has no direction"),
+    "a force below zero": (lambda: Press(TOWARDS, -1.0), "force: is -1.0"),
+    "a spring below zero": (lambda: Press(TOWARDS, 1.0, -2.0), "stiffness: is -2.0"),
+    "no press": (lambda: Load("x", press={"pad": 12.0}), "press.pad: is of type float; give a cagepose.Press"),
+    "along its drive": (
+        lambda: Load("x", press={"pad": Press(TOWARDS, 1.0)}, drive={"pad": Drive((1.0, 0.0, 1.0))}),
+        "press.pad: is driven along the direction in which it presses",
+    ),
+    "with its turn": (
+        lambda: Load("x", press={"pad": Press(TOWARDS, 1.0)}, drive={"pad": Drive(about=(0, 0, 1), angle=1.0)}),
+        "press.pad: presses in a direction that stays",
+    ),
+    "too many": (lambda: Load("x", press={str(n): Press(TOWARDS, 1.0) for n in range(7)}), "press: has 7 bodies"),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_what_is_wrong_with_a_press_is_said(wrong: str):
+    make, message = WRONG[wrong]
+    with pytest.raises(SceneError, match=message.replace("(", "\\(")):
+        make()
