@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -13,9 +14,10 @@ from cagepose.cli.app import main
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = (ROOT / "docs" / "insertion.md").read_text(encoding="utf-8")
-(CODE, *_), (PRINTED, LISTING, *_) = (
-    re.findall(rf"```{kind}\n(.*?)```", PAGE, re.DOTALL) for kind in ("python", "text")
-)
+BLOCKS = re.findall(r"```(python|text)\n(.*?)```", PAGE, re.DOTALL)
+PRINTS = [(code, text) for (kind, code), (other, text) in pairwise(BLOCKS) if (kind, other) == ("python", "text")]
+CODE, PRINTED = ("".join(parts) for parts in zip(*PRINTS, strict=True))
+LISTING = next(text for _, text in BLOCKS if text.startswith("$ cagepose insertion"))
 
 
 def test_the_code_prints_what_stands_below_it(monkeypatch: pytest.MonkeyPatch) -> None:
