@@ -218,6 +218,10 @@ class Load:
             _set_field(self, "stop_at", float(self.stop_at))
 
     def _check_press(self, problems: ProblemList) -> None:
+        for number, spring in enumerate(self.springs):
+            if spring.of in self.press:
+                message = f"rides on {spring.of}, which presses in this phase; hold it in the world, or on another body"
+                problems.add(("springs", number, "of"), message)
         for name, press in self.press.items():
             if any(leg.about_cage is not None for leg in self.drive.get(name, ())):
                 message = "presses in a direction that stays, and the drive turns it; let it turn in another phase"

@@ -18,6 +18,7 @@ from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.run import PhaseRun, Run
+from cagepose.runs.tolerances import TENSION_AT_ZERO
 
 
 def drives_of(scene: Scene, moved: Mapping[str, Pose] | None = None) -> Drives:
@@ -148,7 +149,9 @@ def pressing_forces(scene: Scene, phase: int, displaced: FloatArray) -> dict[str
         row = rows[name]
         origin = scene.cage.bodies[row - 1].pose_cage_body.position_m
         way = Pose(displaced[row, :3], displaced[row, 3:]).transform(origin) - origin
-        found[name] = press.force_n - press.stiffness_n_per_m * float(press.along_cage @ way)
+        less = press.stiffness_n_per_m * float(press.along_cage @ way)
+        is_slack = abs(press.force_n - less) <= TENSION_AT_ZERO * (abs(press.force_n) + abs(less))
+        found[name] = 0.0 if is_slack else press.force_n - less
     return found
 
 

@@ -8,6 +8,7 @@ from cagepose.kernels.boundary.geometry import empty_cage
 from cagepose.kernels.outcome import at_pose
 from cagepose.kernels.stability.proof import empty_proof_workspace
 from cagepose.model.checks import expect
+from cagepose.runs.actions import load_size
 from cagepose.runs.cases import cases_of, part_of
 from cagepose.runs.drives import displaced_after, pressing_forces
 from cagepose.runs.methods import chosen_method
@@ -15,7 +16,7 @@ from cagepose.runs.run import AT_REST, Run
 from cagepose.studies.tolerances import GREATEST_FORCE
 
 SAME_FORCE = 1e-12
-"""Of a force: two limits that are nearer to each other are one."""
+"""Of all that acts: two limits that are nearer to each other are one."""
 
 
 def press_limits(run: Run, phase: int = -1) -> dict[str, tuple[float, float]]:
@@ -55,6 +56,8 @@ class _Asked:
         self.phase, self.part, self.cage = phase, part_of(scene), empty_cage(scene.geometry)
         self.cases = cases_of(scene, friction, run.phases[phase].pose, displaced)
         self.at, self.forces = empty_proof_workspace(scene.geometry), pressing_forces(scene, phase, displaced)
+        forces = sum(map(abs, self.forces.values()))
+        self.size = load_size(scene, phase, run.phases[phase].pose, displaced) + forces or 1.0
         self.rows = {body.name: row for row, body in enumerate(scene.cage.bodies, start=1)}
 
     def holds(self, name: str, force_n: float) -> bool:
@@ -68,13 +71,15 @@ class _Asked:
     def limits(self, name: str) -> tuple[float, float]:
         """Return the least and the greatest force; those that are balanced are all between two."""
         own = self.forces[name]
-        least = 0.0 if self.holds(name, 0.0) else self._between(name, 0.0, own)
-        most = GREATEST_FORCE * own
-        return least, math.inf if self.holds(name, most) else self._between(name, most, own)
+        least, most = min(0.0, own), own + GREATEST_FORCE * self.size
+        return (
+            least if self.holds(name, least) else self._between(name, least, own),
+            math.inf if self.holds(name, most) else self._between(name, most, own),
+        )
 
     def _between(self, name: str, out: float, within: float) -> float:
         """Return the last force that is balanced on the way to one that is not; its digits are halved."""
-        while abs(within - out) > SAME_FORCE * abs(within):
+        while abs(within - out) > SAME_FORCE * self.size:
             middle = 0.5 * (out + within)
             if self.holds(name, middle):
                 within = middle

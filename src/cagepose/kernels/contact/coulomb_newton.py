@@ -19,7 +19,8 @@ from cagepose.kernels.native.kernel import kernel
 STICKING_LIMIT = 12
 """More contacts than this that stick (or half as many again that slip): left to the sweeps."""
 CARRYING_LIMIT = 3 * STICKING_LIMIT
-UNKNOWNS = MOST_FREEDOMS + CARRYING_LIMIT
+UNKNOWNS = MOST_FREEDOMS + 3 * CARRYING_LIMIT
+"""There is room for as many that stick as may carry: the rest of a mode has them all."""
 MOST_NEWTON_STEPS = 8
 
 OPENS, STICKS, SLIPS, SLIDES = 0, 1, 2, 3

@@ -35,6 +35,8 @@ ENOUGH = 1e-9
 """Of what a body presses with: a force that is so near to it is it."""
 LETS_GO = 1e-3
 """In sizes of the scene: so far all that presses gives way where it can neither go on nor hold."""
+ALL, LET_GO = 0, 1
+"""Which bodies go in a sweep, see `begin_sweep`."""
 MOST_LET_GO = 4
 """So often it does in a phase."""
 SWEEPS = 64
@@ -62,14 +64,13 @@ def is_balanced(setting: Setting, position: Vector, quaternion: Quaternion, work
 
 
 @kernel
-def lacks(setting: Setting, state: State, body: int, work: DriveWorkspace) -> float:
-    """Return by how much more a body presses than the contacts resist it, with the forces that they carry; zero: by
-    next to nothing, or it does not press.
+def lacks(body: int, work: DriveWorkspace) -> float:
+    """Return by how much more a body presses than the contacts resist it, with the drivers that were written last;
+    zero: by next to nothing, or it does not press.
     """
     pressing = work.run.proof.contacts.pressing[body]
     if pressing.freedom == 0:
         return 0.0
-    write_drivers(work.run.contacts, state.position, state.quaternion, setting.load, 0.0, work.memory, work.drivers)
     resisted = dot(vector_from(work.drivers[body]), vector_from(pressing.direction))
     missing = pressing.force - resisted
     return missing if abs(missing) > ENOUGH * max(abs(pressing.force), abs(resisted)) else 0.0
@@ -77,51 +78,50 @@ def lacks(setting: Setting, state: State, body: int, work: DriveWorkspace) -> fl
 
 @kernel
 def begin_sweep(setting: Setting, state: State, attempt: int, longest: float, work: DriveWorkspace) -> float:
-    """Let bodies that press go on which are resisted too little, and if none is, let those give way that are resisted
-    too much. Return how far they may go, metres, below zero: give way; 0: none has anywhere to go.
+    """Let bodies that press go on which are resisted too little, and those give way that are resisted too much; return
+    how far they may go, metres; 0: none has anywhere to go.
 
-    The first attempt is of all. In the second one all give way a little, whatever resists them: as between contacts
-    that hold them fast, but only with more force than they have. The next ones are of one body each.
+    `ALL` are tried first. `LET_GO`: all give way a little, whatever resists them, as between contacts that hold them
+    fast, but only with more force than they have. What is beyond that says which body goes alone.
     """
-    memory, pressing, side = work.memory, work.run.proof.contacts.pressing, 0.0
-    only, lets_go = attempt - 1, attempt == 1
-    for sense in (1.0, -1.0):
-        for body in range(1, len(memory.n_legs)):
-            if pressing[body].freedom == 0 or (only > 0 and body != only):
-                continue
-            if sense < 0.0 if lets_go else sense * lacks(setting, state, body, work) > 0.0:
-                memory.n_legs[body], side = 1, sense
-        if side != 0.0:
-            break
-    way = LETS_GO * setting.size_m if lets_go else longest
+    memory, pressing, way = work.memory, work.run.proof.contacts.pressing, longest
+    write_drivers(work.run.contacts, state.position, state.quaternion, setting.load, 0.0, memory, work.drivers)
+    goes = 0.0
     for body in range(1, len(memory.n_legs)):
-        if memory.n_legs[body] == 0:
+        sense = lacks(body, work)
+        if attempt == LET_GO:
+            way, sense = LETS_GO * setting.size_m, -1.0 if pressing[body].freedom > 0 else 0.0
+        if sense == 0.0 or (attempt > LET_GO and body != attempt - LET_GO):
             continue
+        goes, side = way, math.copysign(1.0, sense)
         one, twist = pressing[body], memory.twists[body, 0]
+        memory.n_legs[body] = 1
         for k in range(3):
             twist[k], twist[3 + k] = side * way * one.direction[k], 0.0
         twist[6] = way
-        if not lets_go:
+        if attempt != LET_GO:
             memory.limits[body, 0], memory.limits[body, 1] = side * one.force, -one.stiffness * way
         for k in range(7):
             memory.begun[body, k] = memory.reached[body, k]
-    return side * way
+    return goes
 
 
 @kernel
 def note_sweep(first: int, last: int, begun: float, way: float, work: DriveWorkspace) -> None:
     """Write into the steps ``first`` up to, without, ``last`` how far all that presses has gone, ``begun`` being the
-    way of all sweeps before, and ``way`` that of this one.
+    way of all sweeps before, and ``way`` that of this one. Their share becomes the sum of both, metres.
     """
     rows, pressing = work.run.trace.rows, work.run.proof.contacts.pressing
     for step in range(first, last):
         share = rows[step].share
         for body in range(1, len(pressing)):
             if pressing[body].freedom > 0:
-                at = pressing[body].freedom - WRENCH
+                at, goes = pressing[body].freedom - WRENCH, 0.0
+                if work.memory.n_legs[body] > 0:
+                    goes = dot(vector_from(work.memory.twists[body, 0]), vector_from(pressing[body].direction))
                 before = rows[first - 1].pressed[at] if first > 0 else 0.0
-                rows[step].pressed[at] = before + (way * share if work.memory.n_legs[body] > 0 else 0.0)
-        rows[step].share = begun + abs(way) * share
+                rows[step].pressed[at] = before + share * goes
+        rows[step].share = begun + way * share
 
 
 @kernel
@@ -139,7 +139,7 @@ def press_on(
     """Run a phase in which bodies press, from a state; return (verdict code, number of steps, state, way of all sweeps
     in metres).
     """
-    run, reach_m, attempt, step, done, here = work.run, setting.body.reach_m, 0, 0, 0.0, state
+    run, reach_m, attempt, step, done, here = work.run, setting.body.reach_m, ALL, 0, 0.0, state
     goes_on, longest, n_let_go = False, reach_m, 0
     if is_balanced(setting, here.position, here.quaternion, work):
         stand_at(setting, here.position, here.quaternion, run)
@@ -159,31 +159,32 @@ def press_on(
 
         # What presses goes on, or gives way.
         way, first, share, before = begin_sweep(setting, here, attempt, longest, work), step, 0.0, here
-        if way != 0.0:
+        if way > 0.0:
             drive = DriveSetting(setting, phase, math.inf)
             verdict, step, here, share = drive_on(drive, here, first, step_limit, work)
             note_sweep(first, step, done, way, work)
-            done += abs(way) * share
+            done += way * share
             move_bodies(setting.geometry, phase, share, work.memory)
             begin_pressing(setting.geometry, cases, phase, work)
         stand_still(work)
         if verdict in (ESCAPES, LIMIT):
             return verdict, step, here, done
-        if way != 0.0 and is_balanced(setting, here.position, here.quaternion, work):
+        if way > 0.0 and is_balanced(setting, here.position, here.quaternion, work):
             return RESTS, step, here, done
-        if way > 0.0 and done > FARTHEST * setting.size_m:
+        if done > FARTHEST * setting.size_m:
             return ESCAPES, step, here, done
 
-        # Where nothing is met it goes farther, and where it is stopped it is tried otherwise.
-        goes_on = verdict == RESTS and attempt != 1
+        # Where nothing stops it, it goes farther; where it is stopped at once it is tried otherwise.
+        goes_on = verdict == RESTS and attempt != LET_GO
         moved = way_between(before.position, before.quaternion, here.position, here.quaternion, reach_m)
-        if abs(way) * share > NO_WAY * setting.size_m:
-            longest = 2.0 * longest if share == 1.0 and moved == 0.0 and attempt == 0 else reach_m
-            attempt = 0
+        if way * share > NO_WAY * setting.size_m:
+            most = setting.size_m if moved > 0.0 else math.inf
+            longest = min(2.0 * longest, max(most, reach_m)) if share == 1.0 and attempt == ALL else reach_m
+            attempt = ALL
         elif attempt < len(work.memory.n_legs):
-            lets_go = attempt == 0 and verdict in (BLOCKED, JAMS) and n_let_go < MOST_LET_GO
+            lets_go = attempt == ALL and verdict in (BLOCKED, JAMS) and n_let_go < MOST_LET_GO
             n_let_go += 1 if lets_go else 0
-            attempt += 1 if lets_go or attempt > 0 else 2
+            attempt = LET_GO if lets_go else max(attempt, LET_GO) + 1
         else:
             break
     return STALLED, step, here, done

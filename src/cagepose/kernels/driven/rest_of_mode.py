@@ -52,6 +52,8 @@ ON_FACE, BALANCED = 4e-16, 1e-14
 SOFT = 1e-7
 """In stiffnesses: how much contacts give way in one step of Newton's method, so that those of which some would do share
 what they carry."""
+FARTHEST = 100.0
+"""In sizes of the scene: a step of Newton's method that is longer leads nowhere."""
 STUCK = 1e-14
 """In sizes of the scene: what a contact that sticks may slip."""
 TURNS_BACK = 0.9
@@ -289,6 +291,8 @@ def rest_of_mode(
             return True, position, quaternion
         least_worst = min(least_worst, worst)
         take_step(contacts, friction, stiff, n, work)
+        if not length(work.delta, contacts.n_freedoms) <= FARTHEST * setting.size_m:  # NaN neither
+            return False, position, quaternion
         velocity, spin = twist_of(work.delta, frame)
         if contacts.n_freedoms > WRENCH:
             press_on_by(setting.geometry, contacts.pressing, work.delta, 1.0)
