@@ -112,3 +112,27 @@ def vise(friction: float) -> Scene:
     cage = Cage(shapes=[faces[0]], bodies=[CageBody("jaw", shapes=[faces[1]])])
     load = Load("close", press={"jaw": Press((-1.0, 0.0, 0.0), 12.0)})
     return Scene(part, cage, [load], friction_coefficient=friction)
+
+
+def between(left: Press, right: Press) -> Scene:
+    """A ball of 4 mm of radius without weight, 10 mm from the face of a jaw to each side."""
+    bodies = [
+        CageBody(name, shapes=[Box((0.01, 0.03, 0.03), Pose((side * 0.019, 0.0, 0.0)), f"{name} face")])
+        for name, side in SIDES
+    ]
+    ball = Object(shapes=[Sphere(0.004, name="ball")], mass_kg=0.045)
+    return Scene(ball, Cage(bodies=bodies), [Load("close", press={"left": left, "right": right})])
+
+
+def chuck(friction: float) -> Scene:
+    """A cube of 20 mm on a table, and four jaws that press with 10 N each."""
+    table = Box((0.2, 0.2, 0.01), Pose((0.0, 0.0, -0.015)), "table")
+    sides = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
+    bodies, press = [], {}
+    for number, (x, y) in enumerate(sides):
+        size = (0.01, 0.03, 0.02) if y == 0.0 else (0.03, 0.01, 0.02)
+        bodies.append(CageBody(f"jaw {number}", shapes=[Box(size, Pose((0.03 * x, 0.03 * y, 0.0)), f"face {number}")]))
+        press[f"jaw {number}"] = Press((-x, -y, 0.0), 10.0)
+    cube = Object([Box((0.02, 0.02, 0.02), name="cube")], mass_kg=0.1)
+    cage, load = Cage(shapes=[table], bodies=bodies), Load("close", gravity=(0.0, 0.0, -9.81), press=press)
+    return Scene(cube, cage, [load], friction_coefficient=friction)

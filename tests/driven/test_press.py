@@ -16,6 +16,7 @@ from cagepose import (
     Run,
     SceneError,
     Sphere,
+    Spring,
     certificate,
     check_certificate,
     load_run,
@@ -28,7 +29,7 @@ from cagepose.files.record import record_of
 from cagepose.runs.driven import BodyRun
 from cagepose.runs.driven_cage import cage_at
 from cagepose.runs.replay import replay_event
-from driven.pressed_scenes import ALONG_Y, grip, jaws, lift, plunger, polygon, ramp, vise
+from driven.pressed_scenes import ALONG_Y, between, chuck, grip, jaws, lift, plunger, polygon, ramp, vise
 
 WEIGHT = 0.045 * 9.81
 
@@ -117,6 +118,30 @@ def test_a_jaw_turns_a_block_without_weight_until_it_is_flat(friction: float):
     assert found.pose.euler_zyx[0] == pytest.approx(0.0, abs=1e-7)
 
 
+def test_springs_press_a_ball_to_where_they_are_alike():
+    """One presses with 20 N less 1 N/mm, the other with 12 N less 0.5 N/mm, and a ball of 8 mm is 20 mm from each."""
+    found = run(between(Press((1.0, 0.0, 0.0), 20.0, 1000.0), Press((-1.0, 0.0, 0.0), 12.0, 500.0)))
+    assert found.verdict == "rests"
+    ways = [pressed(found, name).travel_m for name in ("left", "right")]
+    # 20 - a = 12 - b / 2 and a + b = 20, in mm
+    assert ways == pytest.approx([0.012, 0.008], abs=1e-12)
+    assert [pressed(found, name).along for name in ("left", "right")] == pytest.approx([8.0, 8.0], rel=1e-9)
+    assert found.pose.position_m == pytest.approx((0.002, 0.0, 0.0), abs=1e-12)
+
+
+def test_the_stronger_of_two_jaws_pushes_the_other_one_away():
+    found = run(between(Press((1.0, 0.0, 0.0), 12.0), Press((-1.0, 0.0, 0.0), 8.0)))
+    assert found.verdict == "escapes"
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1, 0.5])
+def test_four_jaws_with_all_that_sticks_in_one_system(friction: float):
+    """Sixteen contacts that stick have more unknowns than the search for a motion takes; there was no room for them."""
+    found = run(chuck(friction))
+    assert found.verdict in ("rests", "may rest", "stalled")
+    assert np.isfinite(found.pose.position_m).all()
+
+
 @pytest.mark.parametrize("friction", [0.1, 0.7])
 def test_the_least_grip_is_the_weight_over_twice_the_friction(friction: float):
     ((least, greatest),) = press_limits(run(grip(Sphere(0.004, name="ball"), friction=friction))).values()
@@ -194,6 +219,12 @@ WRONG = {
     "with its turn": (
         lambda: Load("x", press={"pad": Press(TOWARDS, 1.0)}, drive={"pad": Drive(about=(0, 0, 1), angle=1.0)}),
         "press.pad: presses in a direction that stays",
+    ),
+    "a spring on what presses": (
+        lambda: Load(
+            "x", press={"pad": Press(TOWARDS, 1.0)}, springs=[Spring((0, 0, 0), (0, 0, 1), 1.0, 1.0, of="pad")]
+        ),
+        r"springs.0..of: rides on pad, which presses in this phase",
     ),
     "too many": (lambda: Load("x", press={str(n): Press(TOWARDS, 1.0) for n in range(7)}), "press: has 7 bodies"),
 }

@@ -15,7 +15,7 @@ from cagepose.kernels.algebra.vector import Vector, dot, vector_from
 from cagepose.kernels.boundary.features import number_of_bodies
 from cagepose.kernels.boundary.geometry import Geometry
 from cagepose.kernels.contact.contact_set import ContactSet
-from cagepose.kernels.contact.equilibrium import AT_REST, equilibrium
+from cagepose.kernels.contact.equilibrium import AT_REST, HELD_BY_FRICTION, HELD_WITHOUT_FRICTION, equilibrium
 from cagepose.kernels.contact.metric import frame_at, way_between
 from cagepose.kernels.contact.pressing import copy_pressing, number_pressing, write_whole_load
 from cagepose.kernels.driven.bodies import move_bodies, pose_from, write_drivers
@@ -36,7 +36,7 @@ ENOUGH = 1e-9
 LETS_GO = 1e-3
 """In sizes of the scene: so far all that presses gives way where it can neither go on nor hold."""
 ALL, LET_GO = 0, 1
-"""Which bodies go in a sweep, see `begin_sweep`."""
+"""Attempts of a sweep. Beyond these one body goes alone, first while the others press, and then while they stand."""
 MOST_LET_GO = 4
 """So often it does in a phase."""
 SWEEPS = 64
@@ -77,33 +77,76 @@ def lacks(body: int, work: DriveWorkspace) -> float:
 
 
 @kernel
-def begin_sweep(setting: Setting, state: State, attempt: int, longest: float, work: DriveWorkspace) -> float:
-    """Let bodies that press go on which are resisted too little, and those give way that are resisted too much; return
-    how far they may go, metres; 0: none has anywhere to go.
+def begin_leg(body: int, side: float, way: float, work: DriveWorkspace) -> None:
+    """Let a body go on along its direction, or give way with a side of -1, by so much, metres, without a limit."""
+    direction, twist = work.run.proof.contacts.pressing[body].direction, work.memory.twists[body, 0]
+    work.memory.n_legs[body] = 1
+    for k in range(3):
+        twist[k], twist[3 + k] = side * way * direction[k], 0.0
+    twist[6] = way
 
-    `ALL` are tried first. `LET_GO`: all give way a little, whatever resists them, as between contacts that hold them
-    fast, but only with more force than they have. What is beyond that says which body goes alone.
+
+@kernel
+def limit_leg(body: int, side: float, way: float, work: DriveWorkspace) -> None:
+    """Let a body stop where its driver's force is what it presses with."""
+    one, limits = work.run.proof.contacts.pressing[body], work.memory.limits
+    limits[body, 0], limits[body, 1] = side * one.force, -one.stiffness * way
+
+
+@kernel
+def begin_sweep(
+    setting: Setting, state: State, lets_go: bool, only: int, longest: float, work: DriveWorkspace
+) -> float:
+    """Let bodies that press go on which are resisted too little, and those give way that are resisted too much, all or
+    ``only`` one; return how far they may go, metres; 0: none has anywhere to go. Or all that presses ``lets_go`` a
+    little, whatever resists it, as between contacts that hold it fast, but only with more force than it has.
     """
-    memory, pressing, way = work.memory, work.run.proof.contacts.pressing, longest
+    memory, pressing, goes = work.memory, work.run.proof.contacts.pressing, 0.0
     write_drivers(work.run.contacts, state.position, state.quaternion, setting.load, 0.0, memory, work.drivers)
-    goes = 0.0
     for body in range(1, len(memory.n_legs)):
-        sense = lacks(body, work)
-        if attempt == LET_GO:
-            way, sense = LETS_GO * setting.size_m, -1.0 if pressing[body].freedom > 0 else 0.0
-        if sense == 0.0 or (attempt > LET_GO and body != attempt - LET_GO):
-            continue
-        goes, side = way, math.copysign(1.0, sense)
-        one, twist = pressing[body], memory.twists[body, 0]
-        memory.n_legs[body] = 1
-        for k in range(3):
-            twist[k], twist[3 + k] = side * way * one.direction[k], 0.0
-        twist[6] = way
-        if attempt != LET_GO:
-            memory.limits[body, 0], memory.limits[body, 1] = side * one.force, -one.stiffness * way
-        for k in range(7):
-            memory.begun[body, k] = memory.reached[body, k]
+        missing = lacks(body, work)
+        if lets_go and pressing[body].freedom > 0:
+            goes = LETS_GO * setting.size_m
+            begin_leg(body, -1.0, goes, work)
+        elif not lets_go and missing != 0.0 and only in (0, body):
+            goes = longest
+            begin_leg(body, math.copysign(1.0, missing), goes, work)
+            limit_leg(body, math.copysign(1.0, missing), goes, work)
     return goes
+
+
+@kernel
+def let_others_press(
+    setting: Setting, state: State, only: int, longest: float, work: DriveWorkspace
+) -> tuple[float, DriveWorkspace]:
+    """Let ``only`` one body go on, or give way, while the others press where they are; return how far it may go,
+    metres, and the workspace with their freedoms; 0: it is in balance, or the others are not.
+    """
+    memory, pressing, n_pressing = work.memory, work.run.proof.contacts.pressing, 0
+    copy_pressing(pressing, memory.pressing)
+    for body in range(1, len(pressing)):
+        one = memory.pressing[body]
+        n_pressing += 1 if one.freedom > 0 and body != only else 0
+        one.freedom = WRENCH + n_pressing - 1 if one.freedom > 0 and body != only else 0
+    asked, solver = with_pressing(work), work.run.scratch[0].solver
+    if pressing[only].freedom == 0 or n_pressing == 0:
+        return 0.0, asked
+    if not stand_at(setting, state.position, state.quaternion, asked.run):
+        return 0.0, asked
+    contacts, frame = asked.run.contacts, frame_at(setting.body, state.quaternion)
+    solver.load_terms = write_whole_load(
+        setting.load, memory.pressing, state.position, state.quaternion, frame, contacts.n_freedoms, solver.load
+    )
+    code = equilibrium(contacts, frame, setting.friction.greatest, AT_REST, solver)
+    if code not in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION):
+        return 0.0, asked
+    write_drivers(contacts, state.position, state.quaternion, setting.load, 0.0, memory, work.drivers)
+    missing = lacks(only, work)
+    if missing == 0.0:
+        return 0.0, asked
+    begin_leg(only, math.copysign(1.0, missing), longest, work)
+    limit_leg(only, math.copysign(1.0, missing), longest, work)
+    return longest, asked
 
 
 @kernel
@@ -111,25 +154,29 @@ def note_sweep(first: int, last: int, begun: float, way: float, work: DriveWorks
     """Write into the steps ``first`` up to, without, ``last`` how far all that presses has gone, ``begun`` being the
     way of all sweeps before, and ``way`` that of this one. Their share becomes the sum of both, metres.
     """
-    rows, pressing = work.run.trace.rows, work.run.proof.contacts.pressing
+    rows, memory, pressing = work.run.trace.rows, work.memory, work.run.proof.contacts.pressing
     for step in range(first, last):
-        share = rows[step].share
-        for body in range(1, len(pressing)):
-            if pressing[body].freedom > 0:
-                at, goes = pressing[body].freedom - WRENCH, 0.0
-                if work.memory.n_legs[body] > 0:
-                    goes = dot(vector_from(work.memory.twists[body, 0]), vector_from(pressing[body].direction))
-                before = rows[first - 1].pressed[at] if first > 0 else 0.0
-                rows[step].pressed[at] = before + share * goes
+        share, others = rows[step].share, rows[step].pressed
+        for body in range(len(pressing) - 1, 0, -1):  # those that pressed beside a drive have lower numbers there
+            if pressing[body].freedom == 0:
+                continue
+            at, beside, goes = pressing[body].freedom - WRENCH, memory.pressing[body].freedom - WRENCH, 0.0
+            if memory.n_legs[body] > 0:
+                goes = share * dot(vector_from(memory.twists[body, 0]), vector_from(pressing[body].direction))
+            elif beside >= 0:
+                goes = others[beside]
+            others[at] = goes + (rows[first - 1].pressed[at] if first > 0 else 0.0)
         rows[step].share = begun + way * share
 
 
 @kernel
 def stand_still(work: DriveWorkspace) -> None:
-    """Let no body be driven."""
+    """Let no body be driven, or press beside a drive, from where they are now."""
     for body in range(len(work.memory.n_legs)):
-        work.memory.n_legs[body] = 0
-        work.memory.limits[body, 0] = math.inf
+        work.memory.n_legs[body] = work.memory.pressing[body].freedom = 0
+        work.memory.pressing[body].gone, work.memory.limits[body, 0] = 0.0, math.inf
+        for k in range(7):
+            work.memory.begun[body, k] = work.memory.reached[body, k]
 
 
 @kernel
@@ -140,7 +187,7 @@ def press_on(
     in metres).
     """
     run, reach_m, attempt, step, done, here = work.run, setting.body.reach_m, ALL, 0, 0.0, state
-    goes_on, longest, n_let_go = False, reach_m, 0
+    goes_on, longest, n_let_go, n_bodies = False, reach_m, 0, len(work.memory.n_legs)
     if is_balanced(setting, here.position, here.quaternion, work):
         stand_at(setting, here.position, here.quaternion, run)
         note_touching(run)
@@ -158,10 +205,15 @@ def press_on(
                 return verdict, step, here, done
 
         # What presses goes on, or gives way.
-        way, first, share, before = begin_sweep(setting, here, attempt, longest, work), step, 0.0, here
+        first, share, before, asked = step, 0.0, here, work
+        only = max(attempt - LET_GO, 0)
+        if 0 < only < n_bodies:
+            way, asked = let_others_press(setting, here, only, longest, work)
+        else:
+            way = begin_sweep(setting, here, attempt == LET_GO, max(only - n_bodies + 1, 0), longest, work)
         if way > 0.0:
             drive = DriveSetting(setting, phase, math.inf)
-            verdict, step, here, share = drive_on(drive, here, first, step_limit, work)
+            verdict, step, here, share = drive_on(drive, here, first, step_limit, asked)
             note_sweep(first, step, done, way, work)
             done += way * share
             move_bodies(setting.geometry, phase, share, work.memory)
@@ -175,13 +227,13 @@ def press_on(
             return ESCAPES, step, here, done
 
         # Where nothing stops it, it goes farther; where it is stopped at once it is tried otherwise.
-        goes_on = verdict == RESTS and attempt != LET_GO
+        goes_on = verdict == RESTS and attempt == ALL
         moved = way_between(before.position, before.quaternion, here.position, here.quaternion, reach_m)
         if way * share > NO_WAY * setting.size_m:
             most = setting.size_m if moved > 0.0 else math.inf
-            longest = min(2.0 * longest, max(most, reach_m)) if share == 1.0 and attempt == ALL else reach_m
-            attempt = ALL
-        elif attempt < len(work.memory.n_legs):
+            longest = min(2.0 * longest, max(most, reach_m)) if share == 1.0 and attempt != LET_GO else reach_m
+            attempt = ALL if attempt == LET_GO or share < 1.0 else attempt
+        elif attempt < LET_GO + 2 * (n_bodies - 1):
             lets_go = attempt == ALL and verdict in (BLOCKED, JAMS) and n_let_go < MOST_LET_GO
             n_let_go += 1 if lets_go else 0
             attempt = LET_GO if lets_go else max(attempt, LET_GO) + 1
