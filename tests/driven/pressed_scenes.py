@@ -136,3 +136,21 @@ def chuck(friction: float) -> Scene:
     cube = Object([Box((0.02, 0.02, 0.02), name="cube")], mass_kg=0.1)
     cage, load = Cage(shapes=[table], bodies=bodies), Load("close", gravity=(0.0, 0.0, -9.81), press=press)
     return Scene(cube, cage, [load], friction_coefficient=friction)
+
+
+def let_go() -> Scene:
+    """A jaw closes on a cube without weight, which then hangs 10 mm above a table, and opens."""
+    block = Box((0.02, 0.02, 0.02), name="block")
+    shapes = [
+        Box((0.2, 0.2, 0.01), Pose((0.0, 0.0, -0.025)), "table"),
+        Box((0.01, 0.04, 0.02), Pose((-0.015, 0.0, 0.0)), "left face"),
+    ]
+    jaw = CageBody("jaw", shapes=[Box((0.01, 0.04, 0.02), Pose((0.025, 0.0, 0.0)), "right face")])
+    press, weight = {"jaw": Press((-1.0, 0.0, 0.0), 20.0)}, (0.0, 0.0, -9.81)
+    loads = [
+        Load("close", press=press),
+        Load("carry", gravity=weight, press=press),
+        Load("open", gravity=weight, drive={"jaw": Drive((0.01, 0.0, 0.0))}),
+    ]
+    cage = Cage(shapes=shapes, bodies=[jaw])
+    return Scene(Object([block], mass_kg=0.1), cage, loads, friction_coefficient=0.3)

@@ -29,7 +29,7 @@ from cagepose.files.record import record_of
 from cagepose.runs.driven import BodyRun
 from cagepose.runs.driven_cage import cage_at
 from cagepose.runs.replay import replay_event
-from driven.pressed_scenes import ALONG_Y, between, chuck, grip, jaws, lift, plunger, polygon, ramp, vise
+from driven.pressed_scenes import ALONG_Y, between, chuck, grip, jaws, let_go, lift, plunger, polygon, ramp, vise
 
 WEIGHT = 0.045 * 9.81
 
@@ -235,3 +235,12 @@ def test_what_is_wrong_with_a_press_is_said(wrong: str):
     make, message = WRONG[wrong]
     with pytest.raises(SceneError, match=message.replace("(", "\\(")):
         make()
+
+
+def test_a_part_drops_where_a_jaw_opens():
+    """It hangs between a jaw that no longer presses and one that stands: that is a rest by no forces of their own."""
+    found = run(let_go())
+    assert found.phases[0].verdict == "rests"
+    assert found.verdict == "rests"
+    assert found.pose.position_m[2] == pytest.approx(-0.01, abs=1e-9)
+    assert {contact.point for contact in found.contacts} >= {"table"}

@@ -6,13 +6,13 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.algebra.least_squares import WRENCH
+from cagepose.kernels.algebra.least_squares import WRENCH, length
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, norm
 from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.edges import EVERY, first_choice, has_one_choice, next_choice
-from cagepose.kernels.contact.loads import total_load
-from cagepose.kernels.contact.metric import way_between
+from cagepose.kernels.contact.loads import total_load, write_load
+from cagepose.kernels.contact.metric import frame_at, way_between
 from cagepose.kernels.contact.pressing import copy_pressing
 from cagepose.kernels.driven.advance import furthest_share, met_on_chord
 from cagepose.kernels.driven.bodies import (
@@ -44,6 +44,8 @@ LONGEST_TURN = 0.5
 """Radians that a body turns in one step, where the object stands still."""
 LEAST_ADVANCE = 1e-11
 """In shares: less is no progress."""
+UNLOADED = 1e-8
+"""In lengths of the load's terms: what is left of a load that is in balance by itself."""
 MOST_CHOICES = 32
 """Choices of faces that are asked at one place."""
 AT_LIMIT = 1e-9
@@ -53,17 +55,26 @@ STILL_LIMIT = 6
 
 
 @kernel
-def stands_still(drive: DriveSetting, position: Vector, share: float, work: DriveWorkspace) -> bool:
+def stands_still(
+    drive: DriveSetting, position: Vector, quaternion: Quaternion, share: float, work: DriveWorkspace
+) -> bool:
     """Whether nothing that acts on the object changes as the drive goes on, before it meets something."""
-    contacts, memory = work.run.contacts, work.memory
+    contacts, memory, load = work.run.contacts, work.memory, work.scratch[0].load
     if is_driven_by(memory, drive.setting.load):
         return False
+    carries, touches = False, False
     for i in range(contacts.used[0]):
+        carries = carries or contacts.states[i].forces[0] > 0.0
         if memory.n_legs[contacts.rows[i].cage_body] > 0:
+            touches = True
             write_drift(contacts, i, position, share, memory)
             if contacts.states[i].forces[0] > 0.0 or contacts.rows[i].drift[0] > 0.0:
                 return False
-    return True
+    if carries or not touches:
+        return True
+    # A rest that hangs on contacts without play, which press on each other, has no forces of its own.
+    terms = write_load(drive.setting.load, position, quaternion, frame_at(drive.setting.body, quaternion), load)
+    return length(load, WRENCH) <= UNLOADED * terms
 
 
 @kernel
@@ -204,7 +215,7 @@ def drive_on(
         note_touching(run)
 
         # Nothing happens before something is met.
-        if stands_still(drive, position, share, work):
+        if stands_still(drive, position, quaternion, share, work):
             slack = slack_at(share, work.memory)
             to_share = min(longest_advance(fastest_turn(share, work), share, ends), slack)
             copy_pressing(work.memory.pressing, work.memory.tried)
