@@ -136,7 +136,8 @@ def snaps(
             if verdict == LIMIT and most < step_limit:
                 continue
             away = way_between(state.position, state.quaternion, after.position, after.quaternion, setting.body.reach_m)
-            if verdict == ESCAPES or away > max(STAYS * push_m, MOVED * setting.size_m):
+            lets_go = verdict == ESCAPES and push == 0.0  # a push may lead over what held it
+            if lets_go or away > max(STAYS * push_m, MOVED * setting.size_m):
                 return verdict, step, after
     place_object(setting.geometry, state.position, state.quaternion, run.placement)
     return RESTS, first_step, state
