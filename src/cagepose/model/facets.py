@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
@@ -16,6 +17,7 @@ from cagepose.model.near_pairs import near_pairs
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Shape, set_lengths
 from cagepose.model.sides import IntArray, open_sides
+from cagepose.model.surfaces import Surface, checked_surfaces
 from cagepose.model.tolerances import DISTANCE_OUTSIDE
 
 FLAT = 1e-9
@@ -32,8 +34,9 @@ ON_SIDE = 1e-9
 class Facets(Shape):
     """A body within a closed surface of triangles; it need not be convex, or hang together.
 
-    Triangles that lie in one plane are one face of it. It touches as it is: what the triangles stand for, such as a
-    fillet, is not known.
+    Triangles that lie in one plane are one face of it. It touches as it is, but for those triangles that are told to
+    stand for a plane, a cylinder, a cone or a sphere: there it touches as that does, and its edges are the curves in
+    which such surfaces meet.
 
     Attributes
     ----------
@@ -42,7 +45,11 @@ class Facets(Shape):
     triangles
         Indices of the corners of each triangle, counter-clockwise seen from outside, (m, 3).
     flat_m
-        Corners this near to the plane of a face lie in it, metres.
+        Corners this near to the plane of a face, or to a surface, lie in it, metres.
+    surfaces
+        That triangles stand for.
+    on
+        Which of the surfaces each triangle stands for, (m,); -1: none.
     """
 
     kind: ClassVar[str] = "facets"
@@ -50,6 +57,8 @@ class Facets(Shape):
     vertices_m: Annotated[FloatArray, (-1, 3)]
     triangles: IntArray
     flat_m: float
+    surfaces: tuple[Surface, ...]
+    on: IntArray
 
     def __init__(
         self,
@@ -58,12 +67,16 @@ class Facets(Shape):
         flat_m: float | None = None,
         pose_body_shape: Pose | None = None,
         name: str | None = None,
+        surfaces: Sequence[Surface] = (),
+        on: ArrayLike = (),
     ) -> None:
         """
         Parameters
         ----------
         flat_m
             None: a thousand-millionth of the size.
+        on
+            Without surfaces it need not be given.
 
         Raises
         ------
@@ -82,6 +95,11 @@ class Facets(Shape):
             if self.flat_m > FLATTEST * size:
                 found = f"is {self.flat_m:.3g} m, more than a thousandth of the size"
                 problems.add(("flat",), f"{found}; give how far corners are off the planes of their faces")
+        object.__setattr__(self, "surfaces", ())
+        if not problems.problems:
+            known, of = checked_surfaces(surfaces, on, len(corners), problems)
+            object.__setattr__(self, "surfaces", known)
+            object.__setattr__(self, "on", of)
         object.__setattr__(self, "vertices_m", vertices)
         object.__setattr__(self, "triangles", corners)
         self._place(pose_body_shape, name, problems)
@@ -91,7 +109,7 @@ class Facets(Shape):
 
     @property
     def form(self) -> tuple[object, ...]:
-        return self.kind, self._digest, self.flat_m
+        return self.kind, self._digest, self.flat_m, self.surfaces, self.on.tobytes()
 
     @cached_property
     def _digest(self) -> bytes:

@@ -6,6 +6,7 @@ import math
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.boundary.chart import beyond_trim
 from cagepose.kernels.boundary.features import FACE, VERTEX, Boundary
 from cagepose.kernels.boundary.reach import beyond_borders
 from cagepose.kernels.boundary.strands import Strand, circle_under, on_strand
@@ -181,7 +182,8 @@ def _cut_by_side(
         met = common_with_round(circle, side, 0.5 * (begin + end))
         normal = scaled(met.normal, -1.0)
         foot = dot(side.direction, minus(met.point, side.point)) - side.taper * side.radius
-        beyond = max(-foot, foot - feature.length * (1.0 - side.taper * side.taper))
+        square = 1.0 - side.taper * side.taper
+        beyond = max(-foot, foot - feature.length * square, beyond_trim(solid, i, normal, foot / square))
         beyond = max(beyond, abs(side.radius) * beyond_cone(solid, i, normal))
         if beyond <= slack_m:
             n_cuts = _noted(strand, begin, cuts, n_cuts)

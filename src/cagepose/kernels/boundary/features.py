@@ -3,7 +3,7 @@
 A part need not be convex: it is known by what can touch. A vertex and an edge have outward normals where the material
 beside them is convex; a face ends at its bounds. A radius is added on all sides: a sphere is a vertex with a radius, a
 capsule a line with one. The round side of a cylinder or a cone is a line with a radius and without bounds: all normals
-around it count. With a radius below zero it is the wall of a hole.
+around it count, unless borders trim it. With a radius below zero it is the wall of a hole.
 
 Bounds stay in the frame of the body, and what is asked of them is turned into that frame: that is one normal and one
 place for a pair of features, where each of them may have a dozen bounds.
@@ -54,7 +54,8 @@ class Feature:
         Unit vector along a line, the axis of a circle, or the outward normal of a face.
     toward
         Of a circle and of a hole's wall: unit vector across its axis that angles are measured from, right-handed about
-        the axis. Of a face with segments: one in its plane, along which rays lead.
+        the axis. Of a face with segments: one in its plane, along which rays lead. Of a
+        ball, from its centre to a place of it; zero: the centre is in the body.
     length
         Of a line, metres: of the side of a cone, along the axis between where the normals of its ends meet it. The
         radius of a circle.
@@ -63,9 +64,11 @@ class Feature:
     taper
         Sine that the outward normals of a line make with the plane across it: its radius shrinks by as much a metre.
     low, high
-        The outward normals of a circle are cos(psi) outward + sin(psi) axis with psi between these, radians.
+        The outward normals of a circle are cos(psi) outward + sin(psi) axis with psi between these, radians. Of a side
+        that borders trim, ``low`` is the angle of one of its generators.
     start, width
-        The arc of a circle: angles from ``start`` to ``start + width``, radians; a width of 2 pi: all of it.
+        The arc of a circle: angles from ``start`` to ``start + width``, radians; a width of 2 pi: all of it. Of a
+        generator of a side that borders trim: heights along the axis, metres, between which it is on the side.
     first_bound, last_bound
         Its bounds, the last one not included.
     least
@@ -100,13 +103,15 @@ class Bound:
 
     Those of a vertex and of a line hold its outward normals x, those of a face its points x as seen from
     `Feature.point`. A feature is within all of its half-spaces and circles; and if it has segments, these are the
-    borders that a ray out of it crosses an odd number of times.
+    borders that a ray out of it crosses an odd number of times. Segments of a round side are those of its chart, with
+    the side to their left: angle about its axis from `Feature.toward` on, radians, and height along the axis, metres.
 
     Attributes
     ----------
     kind
         HALF_SPACE: x . direction <= limit. INSIDE, OUTSIDE of a circle: ``direction`` leads to its centre, metres, and
-        ``limit`` is its radius. SEGMENT: from ``direction`` to ``end``, metres.
+        ``limit`` is its radius. SEGMENT: from ``direction`` to ``end``, metres; an arc of less than half a turn with
+        the curvature ``limit``, above zero where it leads around what lies to its left.
     """
 
     kind: int

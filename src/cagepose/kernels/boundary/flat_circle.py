@@ -22,7 +22,7 @@ from cagepose.kernels.boundary.features import (
     in_body,
     seen_from_feature,
 )
-from cagepose.kernels.boundary.reach import beyond_face
+from cagepose.kernels.boundary.reach import beyond_face, bulge_at, center_of
 from cagepose.kernels.circles.places import Circle, angle_toward, on_circle
 from cagepose.kernels.native.kernel import kernel
 
@@ -67,13 +67,11 @@ def to_crossing(seen: Circle, body: PlacedBoundary, j: int, at: float, slack_m: 
         if bound.kind == SEGMENT:
             least = min(least, to_segment(seen, bound, vector_from(feature.direction), at, slack_m))
             continue
-        way, slack = vector_from(bound.direction), slack_m
-        base = dot(way, seen.centre) - bound.limit
-        if bound.kind != HALF_SPACE:
-            way = minus(seen.centre, way)
-            base = 0.5 * (dot(way, way) + (seen.radius - bound.limit) * (seen.radius + bound.limit))
-            slack = slack_m * bound.limit
-        crossing = crossing_of(seen, way, base, slack)
+        way = vector_from(bound.direction)
+        if bound.kind == HALF_SPACE:
+            crossing = crossing_of(seen, way, dot(way, seen.centre) - bound.limit, slack_m)
+        else:
+            crossing = crossing_of_circle(seen, way, bound.limit, slack_m)
         for side in range(2):
             if crossing.first < math.inf:
                 least = min(least, to_angle(crossing.first if side == 0 else crossing.last, at))
@@ -95,6 +93,14 @@ def crossing_of(seen: Circle, way: Vector, base: float, slack: float) -> Arc:
 
 
 @kernel
+def crossing_of_circle(seen: Circle, center: Vector, radius: float, slack_m: float) -> Arc:
+    """As `crossing_of`, of another circle in the same plane."""
+    way = minus(seen.centre, center)
+    base = 0.5 * (dot(way, way) + (seen.radius - radius) * (seen.radius + radius))
+    return crossing_of(seen, way, base, slack_m * radius)
+
+
+@kernel
 def to_segment(seen: Circle, segment: Bound, normal: Vector, at: float, slack_m: float) -> float:
     """Return how far on from an angle of a circle a segment crosses it or, to a slack, starts on it; inf: nowhere."""
     start, least = vector_from(segment.direction), math.inf
@@ -104,11 +110,15 @@ def to_segment(seen: Circle, segment: Bound, normal: Vector, at: float, slack_m:
         least = to_angle(angle_toward(seen, start), at)
     across = scaled(cross(normal, along), 1.0 / size)
     crossing = crossing_of(seen, across, dot(across, minus(seen.centre, start)), slack_m)
+    if segment.limit != 0.0:
+        crossing = crossing_of_circle(seen, center_of(segment, normal), 1.0 / abs(segment.limit), slack_m)
     for side in range(2):
         angle = crossing.first if side == 0 else crossing.last
         if angle < math.inf:
-            share = dot(along, minus(on_circle(seen, angle).point, start)) / size
-            if -slack_m <= share <= size + slack_m:
+            place = on_circle(seen, angle).point
+            share = dot(along, minus(place, start)) / size
+            is_on_arc = segment.limit != 0.0 and bulge_at(segment, place, normal) >= -slack_m
+            if is_on_arc or (segment.limit == 0.0 and -slack_m <= share <= size + slack_m):
                 least = min(least, to_angle(angle, at))
     return least
 

@@ -7,7 +7,10 @@ either body, the material between their features is convex there.
 
 from __future__ import annotations
 
+import math
+
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, times, vector_from
+from cagepose.kernels.boundary.chart import chart_place, distance_in_chart, is_trimmed
 from cagepose.kernels.boundary.features import (
     FACE,
     HALF_SPACE,
@@ -15,13 +18,19 @@ from cagepose.kernels.boundary.features import (
     LINE,
     SEGMENT,
     Bound,
+    Boundary,
     PlacedBoundary,
+    in_body,
     rotation_of,
     seen_from_feature,
 )
 from cagepose.kernels.boundary.meetings import slack_of
 from cagepose.kernels.boundary.neighbours import NONE, first_in_layer, forget_layers, layer_of, put_in_layer
-from cagepose.kernels.boundary.reach import beyond_bound, beyond_normals, distance_from_segment
+from cagepose.kernels.boundary.reach import (
+    beyond_bound,
+    beyond_normals,
+    distance_from_segment,
+)
 from cagepose.kernels.boundary.touching import Meetings, is_at_place
 from cagepose.kernels.native.kernel import kernel
 
@@ -35,7 +44,8 @@ CONVEX_SINE = 1e-9
 def is_surface(body: PlacedBoundary, i: int) -> bool:
     """Whether a feature is a face or a round side: it has one normal at a place."""
     feature = body.own.features[i]
-    return feature.kind == FACE or (feature.kind == LINE and feature.first_bound == feature.last_bound)
+    is_whole = feature.kind == LINE and feature.first_bound == feature.last_bound
+    return feature.kind == FACE or is_whole or is_trimmed(body.own, i)
 
 
 @kernel
@@ -59,6 +69,10 @@ def inward_at(body: PlacedBoundary, i: int, normal: Vector, place: Vector, touch
         along, core = vector_from(body.features[i].direction), minus(place, scaled(normal, feature.radius))
         height = dot(along, minus(core, vector_from(body.features[i].point))) / (1.0 - feature.taper * feature.taper)
         way = minus(along, scaled(normal, dot(along, normal)))
+        if is_trimmed(body.own, i):
+            aside = scaled(cross(along, normal), math.copysign(1.0, feature.radius))
+            into = inward_in_chart(body.own, i, in_body(body, normal), height, touch_m)
+            return plus(scaled(aside, into[0] / norm(aside)), scaled(way, into[1] / norm(way)))
         if height <= NEAR * touch_m:
             inward = plus(inward, way)
         if height >= feature.length - NEAR * touch_m:
@@ -68,12 +82,26 @@ def inward_at(body: PlacedBoundary, i: int, normal: Vector, place: Vector, touch
     for k in range(feature.first_bound, feature.last_bound):
         bound = body.own.bounds[k]
         if bound.kind == SEGMENT:
-            if distance_from_segment(bound, seen) <= NEAR * touch_m:
+            if distance_from_segment(bound, seen, own_normal) <= NEAR * touch_m:
                 along = minus(vector_from(bound.end), vector_from(bound.direction))
                 inward = plus(inward, scaled(cross(own_normal, along), 1.0 / norm(along)))
         elif beyond_bound(bound, seen) >= -NEAR * touch_m:
             inward = minus(inward, out_of_bound(bound, seen))
     return times(rotation_of(body), inward)
+
+
+@kernel
+def inward_in_chart(own: Boundary, i: int, normal: Vector, height: float, touch_m: float) -> tuple[float, float]:
+    """Return in which direction of its chart, around and along, a round side with borders goes on from a place on one
+    of these; zero: it is on none.
+    """
+    line, at, around, up = own.features[i], chart_place(own, i, normal, height), 0.0, 0.0
+    for k in range(line.first_bound, line.last_bound):
+        border = own.bounds[k]
+        if distance_in_chart(border, at) <= NEAR * touch_m:
+            x, y = at.radius * (border.end[0] - border.direction[0]), at.slant * (border.end[1] - border.direction[1])
+            around, up = around - y / math.hypot(x, y), up + x / math.hypot(x, y)
+    return around, up
 
 
 @kernel

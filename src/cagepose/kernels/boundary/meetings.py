@@ -6,6 +6,7 @@ import math
 
 from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import dot, minus, plus, row, scaled, times, vector_from
+from cagepose.kernels.boundary.chart import is_trimmed
 from cagepose.kernels.boundary.circle import WHOLE_TURN, circle_of, is_on_arc
 from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places, round_of
 from cagepose.kernels.boundary.extents import extent_of, surely_apart
@@ -271,14 +272,16 @@ def meet_circle(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touc
 
 @kernel
 def meet_around(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touch_m: float, found: Meetings) -> None:
-    """Append the meetings of a circle and of what all of it lies on."""
+    """Append the meetings of a circle and of what all of it lies on; of a side with borders, those of some places."""
     circle = held.features[i] if held.features[i].kind == CIRCLE else cage.features[j]
-    if circle.width < WHOLE_TURN:
+    ends_anywhere = is_trimmed(held.own, i) or is_trimmed(cage.own, j)
+    if circle.width < WHOLE_TURN and not ends_anywhere:
         append_arc(held, i, cage, j, Arc(circle.start, circle.start + circle.width), circle.length, touch_m, found)
         return
+    half = 0.0 if ends_anywhere else HALF_SECTOR
     for k in range(PLACES_AROUND):
-        angle = math.pi * (2 * k + 1) / PLACES_AROUND
-        append_along(held, i, cage, j, Along(angle, HALF_SECTOR, HALF_SECTOR), touch_m, found)
+        angle = circle.start + circle.width * (k + 0.5) / PLACES_AROUND
+        append_along(held, i, cage, j, Along(angle, half, half), touch_m, found)
 
 
 @kernel

@@ -180,7 +180,9 @@ def probe(sides: Sides, first: IntArray, asks_all: bool, touch_m: float, best: O
                 if root == EDGES:
                     best = probe_strand(sides, i, first[i] == i, touch_m, best, work)
                 elif asks_all or first[i] == i:
-                    place = seen_in(sides.to_solid, vector_from(own.features[i].point))
+                    vertex = own.features[i]
+                    place = plus(vector_from(vertex.point), scaled(vector_from(vertex.toward), vertex.radius))
+                    place = seen_in(sides.to_solid, place)
                     best = deeper(best, i, depth_in(sides.solid, place, touch_m, work.waiting))
     return best
 

@@ -9,6 +9,7 @@ import math
 from typing import NamedTuple
 
 from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, norm, plus, scaled, times, vector_from
+from cagepose.kernels.boundary.chart import is_trimmed
 from cagepose.kernels.boundary.circle import WHOLE_TURN
 from cagepose.kernels.boundary.features import CIRCLE, Boundary
 from cagepose.kernels.boundary.surfaces import out_of_axis, slant_of_side
@@ -88,13 +89,15 @@ def strand_of(own: Boundary, i: int, frame: Frame) -> Strand:
         )
     into, sine = into_line(own, i)
     point, way = vector_from(feature.point), vector_from(feature.direction)
-    length = feature.length
+    begin, end = 0.0, feature.length
     if feature.radius != 0.0:
         out, slant = scaled(into, -1.0), slant_of_side(feature)
         normal = plus(scaled(out, slant), scaled(way, feature.taper))
         point = plus(point, scaled(normal, feature.radius))
         way = minus(scaled(way, abs(slant)), scaled(out, math.copysign(feature.taper, slant)))
-        into, length, sine = scaled(normal, -1.0), abs(slant) * length, 1.0
+        if is_trimmed(own, i):
+            begin, end = feature.start, feature.start + feature.width
+        into, begin, end, sine = scaled(normal, -1.0), abs(slant) * begin, abs(slant) * end, 1.0
     return Strand(
         False,
         False,
@@ -103,8 +106,8 @@ def strand_of(own: Boundary, i: int, frame: Frame) -> Strand:
         times(frame.rotation, way),
         (0.0, 0.0, 0.0),
         0.0,
-        0.0,
-        length,
+        begin,
+        end,
         times(frame.rotation, into),
         0.0,
         sine,
@@ -117,6 +120,10 @@ def into_line(own: Boundary, i: int) -> tuple[Vector, float]:
     sine of half the angle between them; of a round side without bounds, toward its axis from some place.
     """
     line, into, one = own.features[i], (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    if is_trimmed(own, i):
+        toward = vector_from(line.toward)
+        other = cross(vector_from(line.direction), toward)
+        return plus(scaled(toward, -math.cos(line.low)), scaled(other, -math.sin(line.low))), 1.0
     for k in range(line.first_bound, line.last_bound):
         one = vector_from(own.bounds[k].direction)
         into = plus(into, one)

@@ -9,6 +9,7 @@ import math
 from typing import NamedTuple
 
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scaled, vector_from
+from cagepose.kernels.boundary.chart import beyond_trim, is_trimmed
 from cagepose.kernels.boundary.features import CIRCLE, FACE, VERTEX, Boundary, Feature
 from cagepose.kernels.boundary.reach import beyond_borders, beyond_bound
 from cagepose.kernels.native.kernel import kernel
@@ -64,8 +65,9 @@ def height_over(own: Boundary, i: int, place: Vector) -> float:
 def beyond_cone(own: Boundary, i: int, normal: Vector) -> float:
     """Return how far a direction is beyond the outward normals of a vertex or a line, a sine; -1: all are."""
     farthest = -1.0
-    for k in range(own.features[i].first_bound, own.features[i].last_bound):
-        farthest = max(farthest, beyond_bound(own.bounds[k], normal))
+    if not is_trimmed(own, i):
+        for k in range(own.features[i].first_bound, own.features[i].last_bound):
+            farthest = max(farthest, beyond_bound(own.bounds[k], normal))
     return farthest
 
 
@@ -116,6 +118,9 @@ def distance_from(own: Boundary, i: int, place: Vector, within_m: float) -> floa
         other = abs(rho - slant * gap)
         foot = height - feature.taper * (gap + feature.radius)
         along = max(0.0, -foot, foot - feature.length * slant * slant)
+        if is_trimmed(own, i) and abs(gap) < within_m:
+            beyond = max(0.0, beyond_trim(own, i, normal, foot / (slant * slant)))
+            return math.hypot(gap, min(1.0, rho / other) * beyond if other > 0.0 else beyond)
     if abs(gap) >= within_m:
         return abs(gap)
     aside = max(0.0, beyond_cone(own, i, normal))
@@ -202,5 +207,5 @@ def _through_side(own: Boundary, i: int, seen: Vector, way: Vector, end: float, 
     if _is_off(along, slope, end, slack_m):
         return NO_CROSSING
     foot = level - taper * line.radius
-    beyond = max(-foot, foot - line.length * square)
+    beyond = max(-foot, foot - line.length * square, beyond_trim(own, i, normal, foot / square))
     return Crossing(True, along, max(beyond, dot(out, there) * beyond_cone(own, i, normal)), slope)

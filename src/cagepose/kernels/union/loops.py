@@ -15,7 +15,7 @@ STRAIGHT = 1e-12
 
 
 class Border:
-    """A straight piece of a face's border; a record.
+    """A piece of a face's border, straight or the chord of an arc; a record.
 
     Attributes
     ----------
@@ -31,6 +31,8 @@ class Border:
         The border that goes on where it ends; `NONE`: none does.
     loop
         The first border of its loop.
+    curvature
+        Of an arc of less than half a turn, one over metres: above zero where it leads around the face; else zero.
     """
 
     start: Annotated[FloatArray, 3]
@@ -42,6 +44,7 @@ class Border:
     face: int
     following: int
     loop: int
+    curvature: float
 
 
 class Loop:

@@ -8,12 +8,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from cagepose.kernels.boundary.features import CIRCLE, FACE, HALF_SPACE, INSIDE, LINE, VERTEX, Boundary
+from cagepose.kernels.boundary.features import FACE, HALF_SPACE, LINE, VERTEX, Boundary
 from cagepose.model.boundary.blocks import NOWHERE, Block, Row, block_of, pierced
 from cagepose.model.boundary.convex_pieces import ConvexPiece, piece_of_box, piece_of_hull
 from cagepose.model.boundary.covers import united
+from cagepose.model.boundary.exact_surface import exact_block
 from cagepose.model.boundary.joined_surfaces import joined_surface, surface_groups
 from cagepose.model.boundary.packed import nothing, packed
+from cagepose.model.boundary.turned_rows import circle_row, disc_row, side_row, tip_row
 from cagepose.model.boundary.union import union_of
 from cagepose.model.boundary.union_block import union_block
 from cagepose.model.box import Box
@@ -63,6 +65,11 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
             blocks.append(block_of(_rows_of(part, number), frozenset((number,))))
     for group in surface_groups(polyhedra, touch_m):
         members = sorted(group)
+        alone = polyhedra[members[0]]
+        if len(members) == 1 and isinstance(alone, Facets) and alone.surfaces:
+            blocks.append(exact_block(alone, members[0]))
+            del polyhedra[members[0]]
+            continue
         blocks.append(
             union_block(joined_surface([polyhedra.pop(number) for number in members], members, touch_m), group)
         )
@@ -130,15 +137,15 @@ def _turned_rows(part: Turned, number: int) -> list[Row]:
     for height, radius, out in ((low, wide, -1.0), (high, narrow, 1.0)):
         lowest_rad = slant * out
         if radius == 0.0:
-            rows.append(_tip(pose, height, out, slant, max(wide, narrow), number))
+            rows.append(tip_row(pose, height, out, slant, max(wide, narrow), number))
             continue
         if isinstance(part, Disc):
             lowest_rad = -0.5 * math.pi
-        rows.append(_disc_face(pose, height, radius, out, number))
+        rows.append(disc_row(pose, height, radius, out, number))
         if not isinstance(part, Disc) or out > 0.0:
-            rows.append(_circle(pose, height, radius, out, (lowest_rad, 0.5 * math.pi), number))
+            rows.append(circle_row(pose, height, radius, out, (lowest_rad, 0.5 * math.pi), number))
     if not isinstance(part, Disc):
-        rows.append(_side(pose, (low, wide), (high, narrow), number))
+        rows.append(side_row(pose, (low, wide), (high, narrow), number))
     return rows
 
 
@@ -147,15 +154,15 @@ def _hole_rows(hole: Hole, solids: Sequence[Shape], number: int) -> list[Row]:
     pose = hole.pose_body_shape
     depth, is_open = hole.run_through(solids)
     heights = [(-depth, hole.radius_m), *hole.rims[1:]]
-    rows = [_side(pose, (low, -radius), (high, -wide), number) for (low, radius), (high, wide) in pairwise(heights)]
+    rows = [side_row(pose, (low, -radius), (high, -wide), number) for (low, radius), (high, wide) in pairwise(heights)]
     slants = [math.atan2(wide - radius, high - low) for (low, radius), (high, wide) in pairwise(heights)]
     for index, (height, radius) in enumerate(heights[1:]):
         above = math.pi - slants[index + 1] if index + 1 < len(slants) else 0.5 * math.pi
-        rows.append(_circle(pose, height, radius, 1.0, (above, math.pi - slants[index]), number))
+        rows.append(circle_row(pose, height, radius, 1.0, (above, math.pi - slants[index]), number))
     if is_open:
-        rows.append(_circle(pose, -depth, hole.radius_m, -1.0, (0.5 * math.pi, math.pi), number))
+        rows.append(circle_row(pose, -depth, hole.radius_m, -1.0, (0.5 * math.pi, math.pi), number))
     else:
-        rows.append(_disc_face(pose, -depth, hole.radius_m, 1.0, number))
+        rows.append(disc_row(pose, -depth, hole.radius_m, 1.0, number))
     return rows
 
 
@@ -165,50 +172,6 @@ def _plate_of(hole: Hole) -> Box:
     depth, _ = hole.run_through([])
     side = 2.0 * AROUND * (wide + depth)
     return Box((side, side, depth), hole.pose_body_shape @ Pose((0.0, 0.0, -0.5 * depth)))
-
-
-def _circle(pose: Pose, height: float, radius: float, out: float, normals: tuple[float, float], number: int) -> Row:
-    """Return a circle about the shape's z axis; its own axis leads up (``out`` 1) or down (-1)."""
-    turn, center = pose.rotation, pose.transform(np.array((0.0, 0.0, height)))
-    axis = out * turn[:, 2]
-    reach = radius * np.sqrt(np.maximum(0.0, 1.0 - axis**2))
-    box = np.stack([center - reach, center + reach])
-    numbers = (radius, 0.0, 0.0, *normals, 0.0, 2.0 * math.pi)
-    return Row(CIRCLE, number, center, axis, turn[:, 0], *numbers, [], radius, box)
-
-
-def _disc_face(pose: Pose, height: float, radius: float, out: float, number: int) -> Row:
-    """Return a flat face inside of a circle about the shape's z axis."""
-    circle = _circle(pose, height, radius, out, (0.0, 0.0), number)
-    bounds = [(INSIDE, NOWHERE, NOWHERE, radius)]
-    return circle._replace(kind=FACE, length=0.0, width=0.0, bounds=bounds, least=radius)
-
-
-def _tip(pose: Pose, height: float, out: float, slant: float, wide: float, number: int) -> Row:
-    """Return the tip of a cone, whose normals lead up (``out`` 1) or down (-1) at least as far as those of its side;
-    what touches along the side is told as of the wide end, with this radius.
-    """
-    place = pose.transform(np.array((0.0, 0.0, height)))
-    bounds = [(HALF_SPACE, -out * pose.rotation[:, 2], NOWHERE, -math.sin(slant * out))]
-    numbers = (0.0,) * 7
-    return Row(VERTEX, number, place, NOWHERE, NOWHERE, *numbers, bounds, wide, np.stack([place, place]))
-
-
-def _side(pose: Pose, low: tuple[float, float], high: tuple[float, float], number: int) -> Row:
-    """Return the side between two heights with their radii, those of a hole below zero."""
-    (start, radius), (end, other) = low, high
-    angle = math.atan2(radius - other, end - start)
-    sine, cosine = math.sin(angle), math.cos(angle)
-    reach = np.array((max(abs(radius), abs(other)),) * 2 + (0.5 * (end - start),))
-    middle, half = pose.transform(np.array((0.0, 0.0, 0.5 * (start + end)))), np.abs(pose.rotation) @ reach
-    start, end = start - radius * sine / cosine, end - other * sine / cosine
-    if abs(other) > abs(radius):  # from the wide end on, as the narrow one may be a tip
-        start, end, radius, sine = end, start, other, -sine
-    point, along = pose.transform(np.array((0.0, 0.0, start))), math.copysign(1.0, end - start) * pose.rotation[:, 2]
-    numbers = (abs(end - start), radius / cosine, sine, 0.0, 0.0, 0.0, 0.0)
-    least = min(abs(end - start), *(abs(wide) for wide in (low[1], high[1]) if wide != 0.0))
-    box = np.stack([middle - half, middle + half])
-    return Row(LINE, number, point, along, pose.rotation[:, 0], *numbers, [], least, box)
 
 
 def _hull_rows(hull: Hull, pose: Pose, radius_m: float, number: int) -> list[Row]:

@@ -65,7 +65,8 @@ def regions_of(sides: FacePlanes, borders: Rows, loops: Rows) -> Faces:
     index = index.reshape(-1)
     face = borders["face"][loops["first"][outer]]
     order = _in_loops(borders, loops[is_wide], np.argsort(index, kind="stable"))
-    is_convex = loops["is_convex"][outer] & (n_loops == 1)
+    n_curved = np.bincount(np.searchsorted(loops["first"], borders["loop"]), borders["curvature"] != 0.0, len(loops))
+    is_convex = loops["is_convex"][outer] & (n_loops == 1) & (n_curved[outer] == 0)
     n_of_face = np.bincount(index, n_borders[is_wide], minlength=len(outer)).astype(np.int64)
     normals, offsets, planes, parts = (of[face] for of in sides)
     return Faces(normals, offsets, planes, parts, is_convex, n_of_face, borders[order])

@@ -41,7 +41,7 @@ class FlatRegions(NamedTuple):
     parts: IntArray
 
 
-class _Tangents(NamedTuple):
+class Tangents(NamedTuple):
     """Edges as seen from one of their ends: at which vertex, along which unit vector, whether they are hollow, and of
     which part.
     """
@@ -103,8 +103,8 @@ def union_of_triangles(vertices_m: FloatArray, triangles: IntArray, parts: IntAr
     lengths = np.linalg.norm(edges.ends_m - edges.starts_m, axis=1)
     np.minimum.at(shortest, np.concatenate([begin[is_edge], end[is_edge]]), np.tile(lengths, 2))
     is_none = _is_within_faces(borders, flat.normals, len(vertices_m))
-    tangents = _Tangents(begin, directions, sine < -SHARP, flat.parts[own])
-    corners = _corners(tangents, vertices_m, shortest, is_none)
+    tangents = Tangents(begin, directions, sine < -SHARP, flat.parts[own])
+    corners = cones_at(tangents, vertices_m, shortest, is_none)
     return TrimmedUnion(corners, edges, faces, n_open)
 
 
@@ -202,8 +202,8 @@ def _is_within_faces(borders: NDArray[np.void], normals: FloatArray, n_vertices:
     return found
 
 
-def _corners(
-    tangents: _Tangents, vertices_m: FloatArray, shortest_m: FloatArray, is_none: NDArray[np.bool_]
+def cones_at(
+    tangents: Tangents, vertices_m: FloatArray, shortest_m: FloatArray, is_none: NDArray[np.bool_]
 ) -> Vertices:
     """Return the convex corners; of each vertex, ``shortest_m`` is the length of the shortest convex edge there, and
     ``is_none`` says that it is no corner.

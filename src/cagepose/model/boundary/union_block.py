@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.boundary.features import FACE, HALF_SPACE, LINE, SEGMENT, VERTEX, Bound, Feature
-from cagepose.model.boundary.blocks import Block
+from cagepose.model.boundary.blocks import Block, Row, block_of
 from cagepose.model.boundary.trimmed import Edges, Faces, TrimmedUnion, Vertices
 from cagepose.model.checks import FloatArray, unit_rows
 
@@ -30,6 +31,17 @@ def union_block(union: TrimmedUnion, apart_from: frozenset[int]) -> Block:
         n_bounds += len(bounds)
     features, bounds, boxes = (np.concatenate(rows) for rows in zip(*blocks, strict=True))
     return Block(features, bounds, boxes, apart_from)
+
+
+def with_rows(block: Block, rows: Sequence[Row]) -> Block:
+    """Return a block with more features."""
+    more = block_of(rows, block.apart_from)
+    if not rows:
+        return block
+    for ends in ("first_bound", "last_bound"):
+        more.features[ends] += len(block.bounds)
+    features, bounds = (np.concatenate(both) for both in ((block.features, more.features), (block.bounds, more.bounds)))
+    return Block(features, bounds, np.concatenate([block.boxes, more.boxes]), block.apart_from)
 
 
 def _vertices(vertices: Vertices) -> Rows:
@@ -63,9 +75,18 @@ def _faces(faces: Faces) -> Rows:
     bounds["kind"] = np.where(is_convex, HALF_SPACE, SEGMENT)
     bounds["direction"] = np.where(is_convex[:, None], -inward, starts)
     bounds["end"] = np.where(is_convex[:, None], 0.0, ends)
-    bounds["limit"] = np.where(is_convex, -np.einsum("ij,ij->i", inward, starts), 0.0)
-    lowest, highest = (of.reduceat(faces.borders["start"], first) for of in (np.minimum, np.maximum))
+    bounds["limit"] = np.where(is_convex, -np.einsum("ij,ij->i", inward, starts), faces.borders["curvature"])
+    bulge = _bulges(np.linalg.norm(ends - starts, axis=1), faces.borders["curvature"])[:, None]
+    lowest = np.minimum.reduceat(faces.borders["start"] - bulge, first)
+    highest = np.maximum.reduceat(faces.borders["start"] + bulge, first)
     return features, bounds, np.stack([lowest, highest], axis=1)
+
+
+def _bulges(chords: FloatArray, curvatures: FloatArray) -> FloatArray:
+    """Return how far arcs are from their chords at most, metres."""
+    half_turns = np.arcsin(np.clip(0.5 * chords * np.abs(curvatures), 0.0, 1.0))
+    bulges: FloatArray = 0.5 * chords * np.tan(0.5 * half_turns)
+    return bulges
 
 
 def _features(kind: int, parts: NDArray[np.int64], points: FloatArray, n_bounds: NDArray[np.int64]) -> Any:

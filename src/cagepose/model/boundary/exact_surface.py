@@ -1,0 +1,190 @@
+"""The boundary of a body whose triangles stand for planes, cylinders, cones and spheres: `exact_block`.
+
+A region of triangles on one surface is a face, trimmed by the curves in which it meets others. A curve is a line, an
+arc, or, as where two cylinders cross, a chain of short edges.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from cagepose.kernels.algebra.record import dtype_of
+from cagepose.kernels.union.loops import Border, Loop, find_loops
+from cagepose.model.boundary.blocks import Block
+from cagepose.model.boundary.curves import ARC, Curve, curves_of, pieces_of
+from cagepose.model.boundary.regions import FacePlanes, regions_of
+from cagepose.model.boundary.round_features import ball_of, circle_of, side_of, tip_of
+from cagepose.model.boundary.surface_corners import corners_of
+from cagepose.model.boundary.surface_regions import Regions, regions_on
+from cagepose.model.boundary.trimmed import Edges, Faces, TrimmedUnion
+from cagepose.model.boundary.union_block import union_block, with_rows
+from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.facets import Facets
+from cagepose.model.sides import IntArray, twins_of
+from cagepose.model.surfaces import PLANE, SPHERE, Surface
+
+SMOOTH = 1e-7
+"""Sine of the angle between faces beside a curve. With less, one goes over into the other smoothly."""
+
+
+class Piece(NamedTuple):
+    """A straight piece of a curve, or one of an arc with less than half a turn, with its region to the left.
+
+    Attributes
+    ----------
+    start, end
+        Vertices.
+    curve
+        Which one it is of.
+    """
+
+    start: int
+    end: int
+    curve: int
+
+
+class ExactSurface(NamedTuple):
+    """A surface of triangles with its regions, and the curves in which these meet.
+
+    Attributes
+    ----------
+    vertices_m, triangles, twins
+        See `Facets` and `cagepose.model.sides.twins_of`.
+    regions, curves
+        See there.
+    sines
+        Of each curve, of the angle between the faces beside it: above zero where it is convex.
+    """
+
+    vertices_m: FloatArray
+    triangles: IntArray
+    twins: IntArray
+    regions: Regions
+    curves: list[Curve]
+    sines: list[float]
+
+
+def exact_block(shape: Facets, number: int) -> Block:
+    """Return the features of a body, in the frame of its shape's body; ``number`` is that of the part."""
+    surfaces = [surface.changed(1.0, shape.pose_body_shape) for surface in shape.surfaces]
+    surface = _surface_of(shape.nodes_body(), shape.triangles, surfaces, shape.on, shape.flat_m)
+    edges, borders = _edges(surface, number), _pieces(surface)
+    faces, n_open = _faces(surface, borders, number)
+    union = TrimmedUnion(corners_of(surface, number), edges, faces, n_open)
+    rows = [
+        circle_of(surface, index, number)
+        for index, curve in enumerate(surface.curves)
+        if curve.kind == ARC and surface.sines[index] > SMOOTH
+    ]
+    for region, face in enumerate(surface.regions.surfaces):
+        if face.kind == SPHERE:
+            rows.append(ball_of(surface, region, number))
+        elif face.is_round:
+            rows.append(side_of(surface, region, borders[region], number))
+            rows += tip_of(surface, region, number)
+    return with_rows(union_block(union, frozenset((number,))), rows)
+
+
+def _surface_of(
+    vertices_m: FloatArray, triangles: IntArray, surfaces: Sequence[Surface], on: IntArray, flat_m: float
+) -> ExactSurface:
+    """Return a surface with its curves. A ball that anything but circles trims, or a hollow one, stays facets."""
+    twins = twins_of(vertices_m, triangles)
+    kept = np.array([not (surface.kind == SPHERE and surface.radius_m < 0.0) for surface in surfaces])
+    while True:
+        known = np.where(kept[on] & (on >= 0), on, -1)
+        regions = regions_on(vertices_m, triangles, twins, surfaces, known, flat_m)
+        curves = curves_of(vertices_m, triangles, twins, regions.of_triangles, regions.surfaces, flat_m)
+        lost = {
+            regions.surfaces[region]
+            for curve in curves
+            if curve.kind != ARC
+            for region in (curve.left, curve.right)
+            if regions.surfaces[region].kind == SPHERE
+        }
+        if not lost:
+            break
+        kept &= np.array([surface not in lost for surface in surfaces])
+    sines = [_sine_beside(vertices_m, curve, regions.surfaces) for curve in curves]
+    return ExactSurface(vertices_m, triangles, twins, regions, curves, sines)
+
+
+def _sine_beside(vertices_m: FloatArray, curve: Curve, surfaces: Sequence[Surface]) -> float:
+    """Return the least sine between the faces beside a curve, in size, with its sign."""
+    start, end = vertices_m[curve.nodes[:-1]], vertices_m[curve.nodes[1:]]
+    middles = (start + end) / 2.0
+    ways = unit_rows(end - start)
+    if curve.kind == ARC:
+        middles, ways = start[:1], curve.tangent(start[0])[None]
+    one, other = surfaces[curve.left].normals(middles), surfaces[curve.right].normals(middles)
+    sines = np.einsum("ij,ij->i", np.cross(one, other), ways)
+    return float(sines[np.abs(sines).argmin()]) if (sines > 0.0).all() or (sines < 0.0).all() else 0.0
+
+
+def _pieces(surface: ExactSurface) -> list[list[Piece]]:
+    """Return the pieces around each region, with it to the left."""
+    found: list[list[Piece]] = [[] for _ in surface.regions.surfaces]
+    for index, curve in enumerate(surface.curves):
+        for first, last in pieces_of(curve, surface.vertices_m):
+            start, end = int(curve.nodes[first]), int(curve.nodes[last])
+            found[curve.left].append(Piece(start, end, index))
+            found[curve.right].append(Piece(end, start, index))
+    return found
+
+
+def _edges(surface: ExactSurface, number: int) -> Edges:
+    """Return the straight convex edges."""
+    starts, ends, planes = list[int](), list[int](), list[tuple[int, int]]()
+    for curve in surface.curves:
+        if curve.kind != ARC:
+            for first, last in pieces_of(curve, surface.vertices_m):
+                starts.append(int(curve.nodes[first]))
+                ends.append(int(curve.nodes[last]))
+                planes.append((curve.left, curve.right))
+    begin, end = surface.vertices_m[starts], surface.vertices_m[ends]
+    directions = unit_rows(end - begin) if starts else np.zeros((0, 3))
+    normals = np.zeros((len(starts), 2, 3))
+    for row, (pair, middle) in enumerate(zip(planes, (begin + end) / 2.0, strict=True)):
+        for side in range(2):
+            normals[row, side] = surface.regions.surfaces[pair[side]].normals(middle[None])[0]
+    sines = np.einsum("ij,ij->i", np.cross(normals[:, 0], normals[:, 1]), directions)
+    chosen = sines > SMOOTH
+    beside = np.array(planes, np.int64).reshape(-1, 2)[chosen]
+    parts = np.full(beside.shape, number)
+    return Edges(begin[chosen], end[chosen], directions[chosen], normals[chosen], beside, parts)
+
+
+def _faces(surface: ExactSurface, pieces: Sequence[Sequence[Piece]], number: int) -> tuple[Faces, int]:
+    """Return the flat faces, and how many of their borders lead nowhere."""
+    flat = [k for k, face in enumerate(surface.regions.surfaces) if face.kind == PLANE]
+    normals = np.array([surface.regions.surfaces[k].axis for k in flat]).reshape(-1, 3)
+    offsets = np.array([np.dot(surface.regions.surfaces[k].axis, surface.regions.surfaces[k].point_m) for k in flat])
+    of = [(face, piece) for face, k in enumerate(flat) for piece in pieces[k]]
+    borders = np.zeros(len(of), dtype_of(Border))
+    face = np.array([face for face, _ in of], np.int64)
+    starts, ends = ([getattr(piece, name) for _, piece in of] for name in ("start", "end"))
+    begin, end = surface.vertices_m[starts], surface.vertices_m[ends]
+    borders["start"], borders["end"], borders["face"] = begin, end, face
+    borders["start_node"], borders["end_node"] = starts, ends
+    if len(of) > 0:
+        borders["direction"] = unit_rows(end - begin)
+        borders["inward"] = np.cross(normals[face], borders["direction"])
+    borders["curvature"] = [_curvature(surface, piece, normals[which]) for which, piece in of]
+    loops = np.zeros(len(borders), dtype_of(Loop))
+    n_loops, n_open = find_loops(normals, borders, loops) if len(of) > 0 else (0, 0)
+    sides = FacePlanes(normals, offsets, np.arange(len(flat)), np.full(len(flat), number))
+    return regions_of(sides, borders, loops[:n_loops]), n_open
+
+
+def _curvature(surface: ExactSurface, piece: Piece, normal: FloatArray) -> float:
+    """Return the curvature of a piece with its face to the left, see `kernels.union.loops.Border`."""
+    curve = surface.curves[piece.curve]
+    if curve.kind != ARC:
+        return 0.0
+    start, end = surface.vertices_m[piece.start], surface.vertices_m[piece.end]
+    inward = np.cross(normal, end - start)
+    return math.copysign(1.0 / curve.radius_m, float(inward @ (curve.center_m - start)))

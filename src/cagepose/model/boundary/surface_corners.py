@@ -1,0 +1,146 @@
+"""The convex corners of a body whose triangles stand for surfaces: `corners_of`.
+
+The cone of outward normals at a corner is the polar of all directions in which the body goes on from there: along its
+curves, and along what of its surfaces is between two of them, where that is more than a right angle.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cagepose.model.boundary.curves import ARC, LINE, Curve
+from cagepose.model.boundary.surface_union import Tangents, cones_at
+from cagepose.model.boundary.trimmed import Vertices
+from cagepose.model.checks import FloatArray
+from cagepose.model.sides import starts_and_ends
+from cagepose.model.surfaces import CONE, PLANE, Surface
+
+if TYPE_CHECKING:
+    from cagepose.model.boundary.exact_surface import ExactSurface
+
+HOLLOW = 1e-9
+"""Sine of the angle between faces beside a curve: a hollow one has more."""
+HALF_TURN = math.pi + 1e-9
+"""Radians. A flat face that takes up more at a place leaves no corner there."""
+WIDE = 0.5 * math.pi
+"""Radians. Directions within a face are told that are no farther apart."""
+TIP = 1e-9
+"""Fraction of a cone's size: what is nearer to its axis is its tip."""
+
+
+Ways = dict[int, tuple[FloatArray, bool]]
+"""Of sides of triangles, the unit vector along which their curve leads away from a place, and whether it is hollow."""
+
+
+def corners_of(surface: ExactSurface, number: int) -> Vertices:
+    """Return the convex corners; ``number`` is that of the part."""
+    starts, _ = starts_and_ends(surface.triangles)
+    leaving, arriving, lengths = _ways(surface)
+    places, directions, is_hollow = list[int](), list[FloatArray](), list[bool]()
+    shortest, is_none = np.full(len(surface.vertices_m), np.inf), np.zeros(len(surface.vertices_m), np.bool_)
+    for side, (direction, hollow) in leaving.items():
+        node = int(starts[side])
+        other = _arriving_in_fan(side, surface)
+        region = int(surface.regions.of_triangles[side // 3])
+        face, place = surface.regions.surfaces[region], surface.vertices_m[node]
+        if other not in arriving:  # a curve leads through
+            continue
+        back, _ = arriving[other]
+        places.append(node)
+        directions.append(direction)
+        is_hollow.append(hollow)
+        shortest[node] = min(shortest[node], lengths[side])
+        between, turn = _between(face, place, direction, back)
+        is_none[node] |= face.kind == PLANE and turn > HALF_TURN
+        for way in between:
+            places.append(node)
+            directions.append(way)
+            is_hollow.append(False)
+    tangents = Tangents(
+        np.array(places, np.int64),
+        np.array(directions).reshape(-1, 3),
+        np.array(is_hollow, np.bool_),
+        np.full(len(places), number),
+    )
+    return cones_at(tangents, surface.vertices_m, shortest, is_none)
+
+
+def _ways(surface: ExactSurface) -> tuple[Ways, Ways, dict[int, float]]:
+    """Return of each side of a triangle that leads away from a place where curves may turn in which direction its curve
+    does, and whether that is hollow; the same of sides that lead to one, seen from there; and how long the curves are.
+    """
+    leaving, arriving, lengths = Ways(), Ways(), dict[int, float]()
+    for curve in surface.curves:
+        if curve.kind == ARC and curve.is_closed:
+            continue
+        last = len(curve.sides) - 1
+        for k, side in enumerate(curve.sides.tolist()):
+            if curve.kind in (ARC, LINE) and 0 < k < last:
+                continue
+            ends = (k == 0 or curve.kind not in (ARC, LINE), k == last or curve.kind not in (ARC, LINE))
+            start, end = int(curve.nodes[k]), int(curve.nodes[k + 1])
+            length = _length(surface, curve, k)
+            twin = int(surface.twins[side])
+            if ends[0]:
+                way = _way(surface, curve, k, start)
+                found = way, _is_hollow(surface, curve, start, way)
+                leaving[side], arriving[twin], lengths[side] = found, found, length
+            if ends[1]:
+                way = _way(surface, curve, k, end)
+                found = -way, _is_hollow(surface, curve, end, way)
+                leaving[twin], arriving[side], lengths[twin] = found, found, length
+    return leaving, arriving, lengths
+
+
+def _way(surface: ExactSurface, curve: Curve, k: int, node: int) -> FloatArray:
+    """Return the unit vector along a curve at one of its nodes; of a chain, that along its edge number k."""
+    if curve.kind == ARC:
+        return curve.tangent(surface.vertices_m[node])
+    first, last = (0, -1) if curve.kind == LINE else (k, k + 1)
+    way = surface.vertices_m[curve.nodes[last]] - surface.vertices_m[curve.nodes[first]]
+    found: FloatArray = way / np.linalg.norm(way)
+    return found
+
+
+def _length(surface: ExactSurface, curve: Curve, k: int) -> float:
+    if curve.kind == ARC:
+        return curve.radius_m
+    first, last = (0, -1) if curve.kind == LINE else (k, k + 1)
+    return float(np.linalg.norm(surface.vertices_m[curve.nodes[last]] - surface.vertices_m[curve.nodes[first]]))
+
+
+def _is_hollow(surface: ExactSurface, curve: Curve, node: int, way: FloatArray) -> bool:
+    place = surface.vertices_m[[node]]
+    one, other = (surface.regions.surfaces[region].normals(place)[0] for region in (curve.left, curve.right))
+    return bool(np.cross(one, other) @ way < -HOLLOW)
+
+
+def _arriving_in_fan(side: int, surface: ExactSurface) -> int:
+    """Return the side that leads to where another one starts, with the triangles of one region between them."""
+    of_triangles, twins = surface.regions.of_triangles, surface.twins
+    at, region = side, of_triangles[side // 3]
+    for _ in range(len(twins)):
+        before = at - at % 3 + (at + 2) % 3
+        if of_triangles[twins[before] // 3] != region:
+            return before
+        at = int(twins[before])
+        if at == side:
+            break
+    return -1
+
+
+def _between(face: Surface, place: FloatArray, first: FloatArray, last: FloatArray) -> tuple[list[FloatArray], float]:
+    """Return directions in which a face goes on from a place, between the two curves that bound it there, and the angle
+    between these, radians: from the first counter-clockwise to the last.
+    """
+    if face.kind == CONE and face.radius_at(place) <= TIP * abs(face.radius_m):
+        return [], 0.0
+    normal = face.normals(place[None])[0]
+    aside = np.cross(normal, first)
+    turn = math.atan2(float(aside @ last), float(first @ last)) % (2.0 * math.pi)
+    n_parts = max(1, math.ceil(turn / WIDE - 1e-9))
+    angles = [turn * k / n_parts for k in range(1, n_parts)]
+    return [math.cos(angle) * first + math.sin(angle) * aside for angle in angles], turn

@@ -1,0 +1,109 @@
+"""The surfaces that triangles stand for: planes, cylinders, cones and spheres, as CAD has them."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cagepose.errors import Key
+from cagepose.model.checks import FloatArray, ProblemList, unit_rows
+from cagepose.model.pose import Pose
+
+PLANE, CYLINDER, CONE, SPHERE = "plane", "cylinder", "cone", "sphere"
+STEEPEST = 1e3
+"""Slope of a cone: one that is flatter is a plane."""
+
+
+class Surface(NamedTuple):
+    """A surface without ends, in the frame of the shape that has it.
+
+    Attributes
+    ----------
+    kind
+        "plane", "cylinder", "cone" or "sphere".
+    point_m
+        A point of the plane or of the axis, or the centre, (3,), metres.
+    axis
+        Unit vector: the outward normal of a plane, the direction of an axis, (3,). Of a sphere: zero.
+    radius_m
+        Of a cylinder or a sphere; of a cone at its point, metres; below zero where the material is outside.
+    slope
+        By how much the radius of a cone grows (in size) for a metre along its axis.
+    """
+
+    kind: str
+    point_m: tuple[float, float, float]
+    axis: tuple[float, float, float]
+    radius_m: float = 0.0
+    slope: float = 0.0
+
+    @property
+    def is_round(self) -> bool:
+        return self.kind != PLANE
+
+    def heights(self, points_m: FloatArray) -> FloatArray:
+        """Return how far points (n, 3) are from the surface, above zero outside of the material, (n,), metres."""
+        seen = points_m - np.array(self.point_m)
+        along = seen @ np.array(self.axis)
+        sense = math.copysign(1.0, self.radius_m)
+        if self.kind == PLANE:
+            level: FloatArray = along
+            return level
+        if self.kind == SPHERE:
+            found: FloatArray = sense * np.linalg.norm(seen, axis=-1) - self.radius_m
+            return found
+        across = np.linalg.norm(seen - along[..., None] * np.array(self.axis), axis=-1)
+        off: FloatArray = sense * (across - (abs(self.radius_m) + self.slope * along)) / math.hypot(1.0, self.slope)
+        return off
+
+    def normals(self, points_m: FloatArray) -> FloatArray:
+        """Return the outward unit normals at points of it, (n, 3)."""
+        axis, seen = np.array(self.axis), points_m - np.array(self.point_m)
+        if self.kind == PLANE:
+            return np.broadcast_to(axis, seen.shape).copy()
+        sense = math.copysign(1.0, self.radius_m)
+        across = seen - (seen @ axis)[..., None] * axis
+        out = unit_rows(np.where(np.linalg.norm(across, axis=-1, keepdims=True) > 0.0, across, 1.0))
+        normals: FloatArray = sense * (out - self.slope * axis) / math.hypot(1.0, self.slope)
+        return normals
+
+    def radius_at(self, point_m: FloatArray) -> float:
+        """Return the radius of a cylinder or a cone at the height of a point, metres, not below zero."""
+        along = float((point_m - np.array(self.point_m)) @ np.array(self.axis))
+        return max(0.0, abs(self.radius_m) + self.slope * along)
+
+    def changed(self, factor: float, pose: Pose) -> Surface:
+        """Return it with lengths times a factor, and then moved."""
+        point = pose.transform(factor * np.array(self.point_m))
+        axis = pose.rotation @ np.array(self.axis)
+        return self._replace(point_m=tuple(point.tolist()), axis=tuple(axis.tolist()), radius_m=factor * self.radius_m)
+
+
+def checked_surfaces(
+    surfaces: ArrayLike, surface_of: ArrayLike, n_triangles: int, problems: ProblemList
+) -> tuple[tuple[Surface, ...], NDArray[np.int64]]:
+    """Return surfaces and which of them each triangle stands for, -1: none; note what cannot be."""
+    found = tuple(surfaces) if isinstance(surfaces, tuple | list) else ()
+    where: tuple[Key, ...] = ("surfaces",)
+    if not all(isinstance(surface, Surface) for surface in found):
+        problems.add(where, "is no list of surfaces; give a Surface each")
+        found = ()
+    for index, surface in enumerate(found):
+        numbers = (*surface.point_m, *surface.axis, surface.radius_m, surface.slope)
+        if surface.kind not in (PLANE, CYLINDER, CONE, SPHERE):
+            problems.add((*where, index), f"is a {surface.kind!r}; give a plane, a cylinder, a cone or a sphere")
+        elif not np.isfinite(numbers).all() or abs(surface.slope) > STEEPEST:
+            problems.add((*where, index), "has numbers that are not finite, or too large; correct them")
+        elif surface.kind in (CYLINDER, SPHERE) and surface.radius_m == 0.0:
+            problems.add((*where, index), "has no radius; give one")
+        elif surface.kind != SPHERE and abs(math.hypot(*surface.axis) - 1.0) > 1e-9:
+            problems.add((*where, index), "has an axis that is no unit vector; divide it by its length")
+    of = np.full(n_triangles, -1, np.int64) if not found else np.array(surface_of, np.int64).reshape(-1)
+    if len(of) != n_triangles or of.min(initial=-1) < -1 or of.max(initial=-1) >= len(found):
+        problems.add(("on",), f"does not give one of {len(found)} surfaces, or -1, for each of {n_triangles} triangles")
+        of = np.full(n_triangles, -1, np.int64)
+    of.setflags(write=False)
+    return found, of
