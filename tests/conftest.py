@@ -79,7 +79,7 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
         except (ValueError, RuntimeError) as error:
             raise SceneError([Problem((), " ".join(str(error).split()))]) from None
 
-    for name in ("exchange.step_solids", "files.meshes.run_trimesh"):
+    for name in ("exchange.step_writer", "files.step.solids", "files.meshes.run_trimesh"):
         module = importlib.import_module(f"cagepose.{name}")
         assert module.ask is ask
         monkeypatch.setattr(module, "ask", ask_here)

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from cagepose import Box, Cylinder, Facets, run
-from cagepose.exchange import solids_document, step_fillets, step_reader
+from cagepose.exchange import solids_document
 from cagepose.exchange.imported import Import, imported
+from cagepose.files.step import fillets, reader
 from cagepose.model.shape_moments import shape_moments
 
 pytest.importorskip("OCP")
@@ -74,7 +75,7 @@ def rounded(solid: Any, radius: float, is_meant: Callable[[np.ndarray], bool]) -
 @pytest.fixture
 def read(tmp_path, monkeypatch) -> Callable[[Any], Import]:
     """Read a part that stands on a table, in this process."""
-    monkeypatch.setattr(solids_document, "read_step", lambda path: step_reader.read_here(str(path)))
+    monkeypatch.setattr(solids_document, "read_step", lambda path: reader.read_here(str(path)))
 
     def found(solid: Any) -> Import:
         from OCP.STEPCAFControl import STEPCAFControl_Writer
@@ -82,7 +83,7 @@ def read(tmp_path, monkeypatch) -> Callable[[Any], Import]:
         from OCP.TCollection import TCollection_ExtendedString
         from OCP.TDataStd import TDataStd_Name
 
-        document, tool = step_reader.empty_document()
+        document, tool = reader.empty_document()
         for name, shape in (("part", solid), ("table", block((-200, -200, -20), (200, 200, 0)))):
             TDataStd_Name.Set_s(tool.AddShape(shape, False), TCollection_ExtendedString(name))
         writer = STEPCAFControl_Writer()
@@ -158,7 +159,7 @@ def test_a_great_rounding_stays(read):
 
 def test_too_many_fillets_stay(read, monkeypatch):
     """Open CASCADE would take minutes, and the file be refused."""
-    monkeypatch.setattr(step_fillets, "MOST_FACES", 0)
+    monkeypatch.setattr(fillets, "MOST_FACES", 0)
     scene, notes = read(bracket())
     assert isinstance(scene.object.parts[0], Facets)
     assert not any("hollow rounding" in note for note in notes)

@@ -26,13 +26,12 @@ from cagepose import (
     run,
 )
 from cagepose.cli.app import main
-from cagepose.exchange import step_solids
 from cagepose.exchange.export import exported
 from cagepose.exchange.imported import imported
 from cagepose.exchange.solids_note import file_beside, read_solids_note, solids_note
 from cagepose.exchange.step import step_solid
-from cagepose.exchange.step_solids import write_step
-from cagepose.exchange.step_writer import write_here
+from cagepose.exchange.step_writer import write_here, write_step
+from cagepose.files.step import solids as step_solids
 from exchange.poses_apart import apart
 from our_scenes import SCENES
 

@@ -10,8 +10,6 @@ import numpy as np
 
 from cagepose.errors import FileProblem, SceneError, SceneFileError
 from cagepose.exchange.solids_note import SHOWN, read_solids_note
-from cagepose.exchange.step_reader import off_volume
-from cagepose.exchange.step_solids import read_step
 from cagepose.exchange.stl import MM_PER_M
 from cagepose.exchange.tolerances import SAME_END, SAME_VOLUME
 from cagepose.files.meshes import mesh_file
@@ -21,6 +19,8 @@ from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
 from cagepose.files.meshes.surface_distance import farthest_from
 from cagepose.files.progress import tell
 from cagepose.files.scene_document import SceneWriter
+from cagepose.files.step.reader import off_volume
+from cagepose.files.step.solids import read_step
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose, turn_from_z

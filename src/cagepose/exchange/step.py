@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from cagepose.exchange.solids import rounded_pieces
-from cagepose.exchange.step_solids import write_step
+from cagepose.exchange.step_writer import write_step
 from cagepose.exchange.stl import MM_PER_M
 from cagepose.exchange.world_parts import world_parts
 from cagepose.model.box import Box

@@ -1,18 +1,43 @@
-"""Solids as a STEP file, made by Open CASCADE in this process: `write_here`. Millimetres throughout."""
+"""Solids as a STEP file, made by Open CASCADE in a process of its own: `write_step`. Millimetres throughout."""
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from cagepose.exchange.step_reader import empty_document
+from cagepose.files.extra import require
+from cagepose.files.own_process import answer, ask
+from cagepose.files.step.reader import empty_document
+from cagepose.files.step.solids import CPU_SECONDS, WALL_SECONDS
 
 Data = dict[str, Any]
 
 
-def write_here(solids: list[Data], path: str) -> Data:
-    """As `cagepose.exchange.step_solids.write_step`, in this process.
+def write_step(solids: list[Data], path: Path) -> None:
+    """Write solids: each has a ``name``, and ``added`` and ``removed`` primitives, see `_primitive`.
+
+    Raises
+    ------
+    SceneError
+        Open CASCADE cannot make one, or takes too long.
+    MissingExtraError
+        Open CASCADE is not installed.
+    """
+    require("OCP", "STEP files need Open CASCADE", "cad")
+    task = json.dumps({"solids": solids, "path": str(path.resolve())})
+    ask(__name__, task.encode(), WALL_SECONDS, "Open CASCADE")
+
+
+def _answer(task: bytes) -> bytes:
+    write_here(**json.loads(task))
+    return b""
+
+
+def write_here(solids: list[Data], path: str) -> None:
+    """As `write_step`, in this process.
 
     Raises
     ------
@@ -47,7 +72,6 @@ def write_here(solids: list[Data], path: str) -> Data:
     writer.SetNameMode(True)
     if not writer.Transfer(document, STEPControl_AsIs) or writer.Write(path) != IFSelect_RetDone:
         raise ValueError("cannot be written by Open CASCADE")
-    return {}
 
 
 def _primitive(part: Data) -> Any:
@@ -103,3 +127,7 @@ def _turned(profile: list[list[float]]) -> Any:
         wire.Add(edge.Edge())
     axis = gp_Ax1(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0))
     return BRepPrimAPI_MakeRevol(BRepBuilderAPI_MakeFace(wire.Wire(), True).Face(), axis).Shape()
+
+
+if __name__ == "__main__":
+    answer(_answer, CPU_SECONDS)

@@ -8,11 +8,5 @@ SAME_VOLUME = 1e-7
 """Fraction of the volume. Shapes that have it are the solid, and its triangles alone are off."""
 SAME_END = 1e-6
 """Fraction of a hole's radius. Ends of holes that are this near are one."""
-TANGENT_RAD = 1e-4
-"""Radians between the faces at an edge. A smaller angle is none."""
-LEAST_TAKEN = 1e-9
-"""Fraction of the volume. Less than this is nothing that was taken away."""
-SAME_OF_SIZE = 1e-7
-"""Fraction of the size. Places and moments that are this near are one."""
 PAST_FACE = 1e-11
 """Fraction of a part's size. Holes go on so far beyond their ends."""

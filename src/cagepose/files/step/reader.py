@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.exchange.step_fillets import each, moments_of, without_fillets
-from cagepose.exchange.tolerances import SAME_OF_SIZE
+from cagepose.files.step.fillets import each, moments_of, without_fillets
+from cagepose.files.step.tolerances import SAME_OF_SIZE
 from cagepose.model.shape_moments import shape_moments
 from cagepose.model.shapes import Convex
 
@@ -33,7 +33,7 @@ def empty_document() -> tuple[Any, Any]:
 
 
 def read_here(path: str) -> Data:
-    """As `cagepose.exchange.step_solids.read_step`, in this process.
+    """As `cagepose.files.step.solids.read_step`, in this process.
 
     Raises
     ------

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cagepose.exchange.tolerances import LEAST_TAKEN, TANGENT_RAD
+from cagepose.files.step.tolerances import LEAST_TAKEN, TANGENT_RAD
 
 WIDEST = 0.97 * np.pi
 """Angle around a fillet: what is rounder joins walls that do not meet, as the end of a slot does."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
-from cagepose.exchange.step_reader import read_here
-from cagepose.exchange.step_writer import write_here
 from cagepose.files.extra import require
 from cagepose.files.own_process import answer, ask
+from cagepose.files.step.reader import read_here
 
 Data = dict[str, Any]
 
@@ -29,30 +29,13 @@ def read_step(path: Path) -> Data:
     MissingExtraError
         Open CASCADE is not installed.
     """
-    return _ask({"read": str(path.resolve())})
-
-
-def write_step(solids: list[Data], path: Path) -> None:
-    """Write solids: each has a ``name``, and ``added`` and ``removed`` primitives, see `cagepose.exchange.step_writer`.
-
-    Raises
-    ------
-    SceneError, MissingExtraError
-        As `read_step`.
-    """
-    _ask({"write": str(path.resolve()), "solids": solids})
-
-
-def _ask(task: Data) -> Data:
     require("OCP", "STEP files need Open CASCADE", "cad")
-    found: Data = json.loads(ask(__name__, json.dumps(task).encode(), WALL_SECONDS, "Open CASCADE"))
+    found: Data = json.loads(ask(__name__, os.fsencode(path.resolve()), WALL_SECONDS, "Open CASCADE"))
     return found
 
 
-def _answer(task: bytes) -> bytes:
-    given = json.loads(task)
-    found = read_here(given["read"]) if "read" in given else write_here(given["solids"], given["write"])
-    return json.dumps(found).encode()
+def _answer(path: bytes) -> bytes:
+    return json.dumps(read_here(os.fsdecode(path))).encode()
 
 
 if __name__ == "__main__":

@@ -1,0 +1,1 @@
+"""STEP files: what solids they hold."""
