@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cagepose.errors import Key, Problem, SceneError, key_path
 from cagepose.files.build_loads import load_of
@@ -17,7 +18,8 @@ from cagepose.files.schema import BoxModel, SceneModel
 from cagepose.files.schema_base import PoseModel
 from cagepose.files.schema_cage import CageBodyModel
 from cagepose.files.schema_shapes import CoefficientModel, ShapeModel
-from cagepose.files.triples import triples, whole_triples
+from cagepose.files.schema_surfaces import SurfaceModel
+from cagepose.files.triples import triples, whole_numbers, whole_triples
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
@@ -30,6 +32,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Adjustable, Scene
 from cagepose.model.scope import unknown_shapes
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Shape, Sphere
+from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, Surface
 from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT, Tolerances
 
 Noun = TypeVar("Noun")
@@ -170,7 +173,10 @@ class _Builder:
         if model.facets is not None:
             vertices = to_metres(triples(model.facets.vertices, "vertices"), self.unit)
             flat_m = None if model.facets.flat is None else length(model.facets.flat)
-            return Facets(vertices, whole_triples(model.facets.triangles, "triangles"), flat_m, pose, model.name)
+            triangles = whole_triples(model.facets.triangles, "triangles")
+            surfaces = [self.surface(surface) for surface in model.facets.surfaces or ()]
+            on = whole_numbers(model.facets.on or "", "on")
+            return Facets(vertices, triangles, flat_m, pose, model.name, surfaces, on)
         if model.disc is not None:
             return Disc(length(model.disc.radius), pose, model.name)
         assert model.hole is not None, "the schema lets no shape pass that has no kind"
@@ -180,6 +186,18 @@ class _Builder:
         return Hole(
             length(model.hole.radius), length(model.hole.depth), chamfer, model.hole.in_ or (), pose, model.name
         )
+
+    def surface(self, model: SurfaceModel) -> Surface:
+        if model.plane is not None:
+            return Surface(PLANE, _three(to_metres(model.plane.point, self.unit)), _three(model.plane.normal))
+        if model.sphere is not None:
+            radius_m = (-1.0 if model.sphere.hollow else 1.0) * self.length(model.sphere.radius)
+            return Surface(SPHERE, _three(to_metres(model.sphere.center, self.unit)), (0.0, 0.0, 0.0), radius_m)
+        side = model.cone or model.cylinder
+        assert side is not None, "the schema lets no surface pass that has no kind"
+        radius_m = (-1.0 if side.hollow else 1.0) * self.length(side.radius)
+        kind, slope = (CYLINDER, 0.0) if model.cone is None else (CONE, model.cone.slope)
+        return Surface(kind, _three(to_metres(side.point, self.unit)), _three(side.axis), radius_m, slope)
 
     def mesh(self, model: ShapeModel, name: str) -> list[Shape]:
         """Return what a mesh is, in its body's frame."""
@@ -308,3 +326,8 @@ def _coefficient(friction: CoefficientModel | float | None) -> float | None:
     if friction.angle_deg is not None:
         return math.tan(math.radians(friction.angle_deg))
     return friction.coefficient
+
+
+def _three(values: ArrayLike) -> tuple[float, float, float]:
+    x, y, z = np.asarray(values, dtype=np.float64).tolist()
+    return x, y, z

@@ -29,6 +29,7 @@ from cagepose.model.press import Press
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Convex, Shape
 from cagepose.model.spring import Spring
+from cagepose.model.surfaces import CONE, PLANE, SPHERE, Surface
 from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT
 
 FEWEST_DIGITS, MOST_DIGITS = 6, 17
@@ -158,23 +159,38 @@ class SceneWriter:
         coefficient = self.friction_of.pop(str(shape.name), None)
         return found | _given({"friction": coefficient})
 
+    def surface(self, surface: Surface) -> dict[str, Any]:
+        """Return the numbers of a surface that triangles stand for."""
+        point, axis = self.lengths(surface.point_m), _plain_list(surface.axis)
+        if surface.kind == PLANE:
+            return {"point": point, "normal": axis}
+        hollow = {"hollow": True} if surface.radius_m < 0.0 else {}
+        radius = self.length(abs(surface.radius_m))
+        if surface.kind == SPHERE:
+            return {"center": point, "radius": radius, **hollow}
+        slope = {"slope": _plain(surface.slope)} if surface.kind == CONE else {}
+        return {"point": point, "axis": axis, "radius": radius, **slope, **hollow}
+
     def numbers(self, shape: Shape) -> dict[str, Any]:
         """Return the numbers that make a shape."""
+        found: dict[str, Any]
         if isinstance(shape, Box):
             return {"size": self.lengths(shape.size_m)}
         if isinstance(shape, Facets):
             corners = text_of([self.lengths(vertex) for vertex in shape.vertices_m])
-            return {
+            found = {
                 "vertices": corners,
                 "triangles": text_of(shape.triangles.tolist()),
                 "flat": self.length(shape.flat_m),
             }
+            if shape.surfaces:
+                found["surfaces"] = [{surface.kind: self.surface(surface)} for surface in shape.surfaces]
+                found["on"] = " ".join(str(index) for index in shape.on.tolist())
+            return found
         if isinstance(shape, Convex):
             vertices = [self.lengths(vertex) for vertex in shape.vertices_m]
             return {"vertices": vertices, "radius": self.length(shape.radius_m)}
-        found: dict[str, Any] = {
-            key.removesuffix("_m"): self.length(value) for key, value in vars(shape).items() if key.endswith("_m")
-        }
+        found = {key.removesuffix("_m"): self.length(value) for key, value in vars(shape).items() if key.endswith("_m")}
         if isinstance(shape, Hole):
             if shape.chamfer is not None:
                 angle_rad = shape.chamfer.angle_rad

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
 from cagepose.files.schema_base import Mapping, Name, NotNegative, Positive, Size, Vector, wrong
+from cagepose.files.schema_surfaces import SurfaceModel
 from cagepose.files.units import LengthUnit
 
 
@@ -107,9 +108,27 @@ class FacetsModel(Mapping):
     )
     flat: Positive | None = Field(
         None,
-        description="Corners this near to the plane of a face lie in it; left out: a thousand-millionth of the size.",
+        description="Corners this near to the plane of a face, or to a surface, lie in it; left out: a"
+        " thousand-millionth of the size.",
         examples=[1e-8],
     )
+    surfaces: list[SurfaceModel] | None = Field(
+        None,
+        description="What triangles stand for: there the body is as round as that.",
+        examples=[[{"cylinder": {"point": [0, 0, 0], "axis": [0, 0, 1], "radius": 3}}]],
+    )
+    on: str | None = Field(
+        None,
+        min_length=1,
+        description="Of each triangle the number of its surface, from 0 on; -1: it stands for none.",
+        examples=["0 0 -1 -1"],
+    )
+
+    @model_validator(mode="after")
+    def _both(self) -> FacetsModel:
+        if (self.surfaces is None) != (self.on is None):
+            raise wrong("has one of surfaces and on alone; give both, or none")
+        return self
 
 
 class DiscModel(Mapping):

@@ -44,6 +44,14 @@ def whole_triples(text: str, key: str) -> NDArray[np.int64]:
     return found.astype(np.int64)
 
 
+def whole_numbers(text: str, key: str) -> NDArray[np.int64]:
+    """Return the whole numbers of a text, (n,); raises `SceneError` as `whole_triples`."""
+    try:
+        return np.array([int(number) for number in text.split()], np.int64)
+    except (ValueError, OverflowError) as error:
+        raise _refused(key, f"holds what is no whole number ({error}); give indices alone") from None
+
+
 def text_of(rows: Sequence[Sequence[float]]) -> str:
     """Return rows of numbers as one text, from which the same numbers are read."""
     return ", ".join(" ".join(repr(number) for number in row) for row in rows)

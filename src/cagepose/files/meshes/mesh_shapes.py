@@ -131,9 +131,9 @@ def tidied(shape: Shape, scale: float, origin: FloatArray) -> Shape:
     if isinstance(shape, Box):
         return Box(lengths(shape.size_m), pose, shape.name)
     if isinstance(shape, Facets):
-        return Facets(
-            lengths(shape.vertices_m + origin / scale), shape.triangles, scale * shape.flat_m, None, shape.name
-        )
+        surfaces = [surface.changed(scale, Pose(origin)) for surface in shape.surfaces]
+        corners, flat_m = lengths(shape.vertices_m + origin / scale), scale * shape.flat_m
+        return Facets(corners, shape.triangles, flat_m, None, shape.name, surfaces, shape.on)
     if isinstance(shape, Convex):
         return Convex(lengths(shape.vertices_m + origin / scale), float(lengths(shape.radius_m)), None, shape.name)
     numbers: dict[str, Any] = {key: float(lengths(value)) for key, value in vars(shape).items() if key.endswith("_m")}

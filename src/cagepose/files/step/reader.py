@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 
 from cagepose.files.step.fillets import each, moments_of, without_fillets
+from cagepose.files.step.surfaces import farthest_off, one_of_each, surface_of_face
 from cagepose.files.step.tolerances import SAME_OF_SIZE
 from cagepose.model.shape_moments import shape_moments
 from cagepose.model.shapes import Convex
+from cagepose.model.surfaces import Surface
 
 Data = dict[str, Any]
 
@@ -224,6 +226,8 @@ def _triangles(solid: Any, faces: list[Any], *, within: bool = False) -> Data:
     # the corners of each face by themselves
     points: list[list[float]] = []
     triangles: list[list[int]] = []
+    surfaces: list[Surface | None] = []
+    n_of_face: list[int] = []
     for face in faces:
         place = TopLoc_Location()
         mesh = BRep_Tool.Triangulation_s(face, place)
@@ -236,14 +240,22 @@ def _triangles(solid: Any, faces: list[Any], *, within: bool = False) -> Data:
         for index in range(1, mesh.NbTriangles() + 1):
             triangle = mesh.Triangle(index)
             triangles.append([first + triangle.Value(corner) for corner in order])
+        n_of_face.append(mesh.NbTriangles())
+        own = np.array(points)[np.array(triangles[len(triangles) - mesh.NbTriangles() :])]
+        surfaces.append(surface_of_face(face, own))
     # corners that faces share are one
     _, kept, same = np.unique(
         np.round(np.array(points) / (1e-8 * size)), axis=0, return_index=True, return_inverse=True
     )
     corners = same.ravel()[np.array(triangles)]
     distinct = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
+    known, which = one_of_each(surfaces, size)
+    on, vertices = np.repeat(which, n_of_face)[distinct], np.array(points)[kept]
     return {
-        "vertices": np.array(points)[kept].tolist(),
+        "vertices": vertices.tolist(),
         "faces": corners[distinct].tolist(),
         "off": max(_off(face) for face in faces),
+        "surfaces": known,
+        "on": on.tolist(),
+        "off_surfaces": farthest_off(known, on, vertices[corners[distinct]]),
     }

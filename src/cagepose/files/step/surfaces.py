@@ -1,0 +1,106 @@
+"""The surfaces of a STEP file's faces as ours: `surface_of_face`. Millimetres throughout."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cagepose.files.step.tolerances import SAME_OF_SIZE
+from cagepose.model.checks import FloatArray
+from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, Surface
+
+
+def surface_of_face(face: Any, corners: FloatArray) -> Surface | None:
+    """Return the surface of a face, whose triangles have ``corners``, (n, 3, 3), counter-clockwise seen from outside;
+    None: it is none of ours.
+    """
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane, GeomAbs_Sphere
+
+    adaptor = BRepAdaptor_Surface(face)
+    kind = adaptor.GetType()
+    if kind == GeomAbs_Plane:
+        plane = adaptor.Plane()
+        found = Surface(PLANE, _xyz(plane.Location()), _xyz(plane.Axis().Direction()))
+    elif kind == GeomAbs_Cylinder:
+        cylinder = adaptor.Cylinder()
+        found = Surface(CYLINDER, _xyz(cylinder.Location()), _xyz(cylinder.Axis().Direction()), cylinder.Radius())
+    elif kind == GeomAbs_Cone:
+        found = _cone(adaptor.Cone(), corners)
+    elif kind == GeomAbs_Sphere:
+        ball = adaptor.Sphere()
+        found = Surface(SPHERE, _xyz(ball.Location()), (0.0, 0.0, 0.0), ball.Radius())
+    else:
+        return None
+    return _facing_out(found, corners)
+
+
+def _cone(cone: Any, corners: FloatArray) -> Surface:
+    """Return a cone with its point where its triangles are widest."""
+    place, axis = _xyz(cone.Location()), _xyz(cone.Axis().Direction())
+    heights = (corners.reshape(-1, 3) - np.array(place)) @ np.array(axis)
+    slope = float(np.tan(cone.SemiAngle()))
+    radii = cone.RefRadius() + slope * heights
+    widest = int(np.abs(radii).argmax())
+    sign = float(np.sign(radii[widest]))
+    point = np.array(place) + heights[widest] * np.array(axis)
+    x, y, z = point.tolist()
+    return Surface(CONE, (x, y, z), axis, abs(float(radii[widest])), sign * slope)
+
+
+def _facing_out(surface: Surface, corners: FloatArray) -> Surface:
+    """Return a surface whose normals are on the side of those of its triangles."""
+    areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    facing = np.einsum("ij,ij->", areas, surface.normals(corners.mean(axis=1)))
+    if facing >= 0.0:
+        return surface
+    if surface.kind == PLANE:
+        x, y, z = (-np.array(surface.axis)).tolist()
+        return surface._replace(axis=(x, y, z))
+    return surface._replace(radius_m=-surface.radius_m)
+
+
+def one_of_each(surfaces: list[Surface | None], size: float) -> tuple[list[Surface], list[int]]:
+    """Return different surfaces, and which of them each of the given ones is, -1: none. Cylinders that CAD has divided
+    are one, and so are faces in one plane.
+    """
+    found, which = list[Surface](), list[int]()
+    for surface in surfaces:
+        if surface is None:
+            which.append(-1)
+            continue
+        same = next((k for k, other in enumerate(found) if _are_one(surface, other, size)), len(found))
+        if same == len(found):
+            found.append(surface)
+        which.append(same)
+    return found, which
+
+
+def _are_one(one: Surface, other: Surface, size: float) -> bool:
+    if one.kind != other.kind or (one.radius_m < 0.0) != (other.radius_m < 0.0):
+        return False
+    slack = SAME_OF_SIZE * size
+    between = np.array(other.point_m) - np.array(one.point_m)
+    axis, along = np.array(one.axis), float(np.dot(one.axis, other.axis))
+    if one.kind == SPHERE:
+        return float(np.linalg.norm(between)) <= slack and abs(one.radius_m - other.radius_m) <= slack
+    if float(np.linalg.norm(np.cross(one.axis, other.axis))) > SAME_OF_SIZE:
+        return False
+    if one.kind == PLANE:
+        return along > 0.0 and abs(float(between @ axis)) <= slack
+    height = float(between @ axis)
+    off = float(np.linalg.norm(between - height * axis))
+    slope = other.slope if along > 0.0 else -other.slope
+    radius = abs(one.radius_m) + one.slope * height
+    return off <= slack and abs(radius - abs(other.radius_m)) <= slack and abs(one.slope - slope) <= SAME_OF_SIZE
+
+
+def farthest_off(surfaces: list[Surface], on: FloatArray, corners: FloatArray) -> float:
+    """Return how far corners of triangles, (n, 3, 3), are from the surface that each is on, at most."""
+    off = [np.abs(surface.heights(corners[on == k])).max(initial=0.0) for k, surface in enumerate(surfaces)]
+    return float(max(off, default=0.0))
+
+
+def _xyz(point: Any) -> tuple[float, float, float]:
+    return point.X(), point.Y(), point.Z()

@@ -1,0 +1,59 @@
+"""A surface of triangles that stand for others, with each triangle divided into four: `finer`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cagepose.model.checks import FloatArray
+from cagepose.model.sides import IntArray
+from cagepose.model.surfaces import Surface
+
+NEWTON_STEPS = 4
+"""A place near two surfaces is moved onto both so many times; each squares what is left."""
+LEAST_SINE_SQUARE = 1e-8
+"""Of the angle between two surfaces: with less they are as one there."""
+
+
+def finer(
+    vertices_m: FloatArray, triangles: IntArray, surfaces: Sequence[Surface], on: IntArray
+) -> tuple[FloatArray, IntArray, IntArray]:
+    """Return vertices, triangles and their surfaces of one that has the middles of all sides as vertices, too, each
+    moved onto the surfaces beside it; parameters as of `cagepose.model.facets.Facets`, in one frame.
+    """
+    starts, ends = triangles, np.roll(triangles, -1, axis=1)
+    pairs = np.sort(np.stack([starts, ends], axis=2).reshape(-1, 2), axis=1)
+    sides, which = np.unique(pairs, axis=0, return_inverse=True)
+    which = which.reshape(-1, 3)
+    middles = vertices_m[sides].mean(axis=1)
+    one, other = np.full(len(sides), -1), np.full(len(sides), len(surfaces))
+    for k in range(3):
+        np.maximum.at(one, which[:, k], on)
+        np.minimum.at(other, which[:, k], on)
+    for first, second in np.unique(np.stack([one, other], axis=1), axis=0).tolist():
+        mine = (one == first) & (other == second)
+        known = [surfaces[k] for k in {first, second} if k >= 0]
+        if any(surface.is_round for surface in known):
+            middles[mine] = _onto(middles[mine], known)
+    n = len(vertices_m)
+    a, b, c = triangles.T
+    ab, bc, ca = n + which.T
+    divided = np.stack([(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)], axis=0)
+    return np.concatenate([vertices_m, middles]), divided.transpose(2, 0, 1).reshape(-1, 3), np.repeat(on, 4)
+
+
+def _onto(places: FloatArray, surfaces: Sequence[Surface]) -> FloatArray:
+    """Return places moved the shortest way onto one or two surfaces, by Newton's method."""
+    if len(surfaces) == 1:
+        (surface,) = surfaces
+        moved: FloatArray = places - surface.heights(places)[:, None] * surface.normals(places)
+        return moved
+    for _ in range(NEWTON_STEPS):
+        normals = np.stack([surface.normals(places) for surface in surfaces], axis=1)
+        heights = np.stack([surface.heights(places) for surface in surfaces], axis=1)
+        cosines = np.einsum("ij,ij->i", normals[:, 0], normals[:, 1])
+        squares = np.maximum(1.0 - cosines**2, LEAST_SINE_SQUARE)
+        shares = (heights - cosines[:, None] * heights[:, ::-1]) / squares[:, None]
+        places = places - np.einsum("ij,ijk->ik", shares, normals)
+    return places
