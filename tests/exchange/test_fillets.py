@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 from cagepose import Box, Cylinder, Facets, run
-from cagepose.exchange import solids_document
 from cagepose.exchange.imported import Import, imported
-from cagepose.files.step import fillets, reader
+from cagepose.files.step import fillets, reader, step_file
 from cagepose.model.shape_moments import shape_moments
 
 pytest.importorskip("OCP")
@@ -75,7 +74,7 @@ def rounded(solid: Any, radius: float, is_meant: Callable[[np.ndarray], bool]) -
 @pytest.fixture
 def read(tmp_path, monkeypatch) -> Callable[[Any], Import]:
     """Read a part that stands on a table, in this process."""
-    monkeypatch.setattr(solids_document, "read_step", lambda path: reader.read_here(str(path)))
+    monkeypatch.setattr(step_file, "read_step", lambda path: reader.read_here(str(path)))
 
     def found(solid: Any) -> Import:
         from OCP.STEPCAFControl import STEPCAFControl_Writer
@@ -103,7 +102,7 @@ def bracket() -> Any:
 def test_a_bracket_with_a_fillet_and_holes_is_its_walls_and_its_holes(read):
     """A rounding of r in a right corner leaves r (sqrt(2) - 1) of it: 2.07 mm of 5."""
     solid = cut(bracket(), pin((40, 20, -1), (0, 0, 1), 4.0, 20.0), pin((-1, 20, 35), (1, 0, 0), 3.0, 20.0))
-    scene, notes = read(solid)
+    scene, notes, _ = read(solid)
     assert sorted(hole.radius_m for hole in scene.object.holes) == pytest.approx([3e-3, 4e-3])
     assert len(scene.object.parts) == 2
     assert f"up to {5 * (math.sqrt(2) - 1):.2g} mm off; where something rests in one, make it a chamfer" in notes[0]
@@ -115,12 +114,12 @@ def test_fillets_that_meet_and_those_around_a_shaft_are_left_out(read):
     tray = cut(block((-40, -30, 0), (40, 30, 20)), block((-30, -20, 8), (30, 20, 21)))
     tray = rounded(tray, 5.0, lambda middle: abs(middle[0]) == 30.0 and abs(middle[1]) == 20.0)
     tray = rounded(tray, 2.0, lambda middle: middle[2] == TOP)
-    scene, notes = read(tray)
+    scene, notes, _ = read(tray)
     assert [type(part) for part in scene.object.parts] == [Box] * 5
     assert "'part' has 12 hollow roundings, of 5 mm at most" in notes[0]
     shaft = fused(pin((0, 0, 0), (0, 0, 1), 20.0, 10.0), pin((0, 0, 10), (0, 0, 1), 10.0, 40.0))
     shaft = rounded(shaft, 3.0, lambda middle: middle[2] == 10.0 and abs(middle[0]) == 10.0)
-    scene, notes = read(shaft)
+    scene, notes, _ = read(shaft)
     assert [type(part) for part in scene.object.parts] == [Cylinder] * 2
     assert notes[0].startswith("'part' has 1 hollow rounding, of 3 mm at most")
 
@@ -130,7 +129,7 @@ def test_holes_and_notches_are_no_fillets(read):
     slot = fused(block((-10, -4, -1), (10, 4, 30)), fused(*(pin((x, 0, -1), (0, 0, 1), 4.0, 31.0) for x in (-10, 10))))
     notch = pin((30, -30, 10), (0, 1, 0), 4.0, 60.0)
     solid = cut(block((-30, -20, 0), (30, 20, 10)), slot, notch, pin((-20, -12, -1), (0, 0, 1), 2.0, 20.0))
-    scene, notes = read(solid)
+    scene, notes, _ = read(solid)
     assert not any("hollow rounding" in note for note in notes)
     assert [part.kind for part in (*scene.object.parts, *scene.object.holes)] == ["facets", "hole"]
     assert run(scene).verdict == "rests"
@@ -139,7 +138,7 @@ def test_holes_and_notches_are_no_fillets(read):
 def test_round_edges_that_stay_flat_sides_have_their_sagitta_told(read):
     """A chord of 1/64 of a circle of 4 mm is 4 (1 - cos(pi / 64)) within it."""
     plate = rounded(block((-30, -20, 0), (30, 20, 10)), 4.0, lambda middle: middle[2] == 5.0)
-    _, notes = read(plate)
+    _, notes, _ = read(plate)
     assert (
         f"'part' has flat sides where it is round there, up to {4 * (1 - math.cos(math.pi / 64)):.2g} mm off" in notes
     )
@@ -149,7 +148,7 @@ def test_a_great_rounding_stays(read):
     """A cradle for a roller is no fillet that may be left out."""
     whole = fused(block((0, 0, 0), (60, 40, 8)), block((0, 0, 0), (8, 40, 50)))
     whole = rounded(whole, 30.0, lambda middle: middle[0] == 8.0 and middle[2] == TOP)
-    scene, notes = read(whole)
+    scene, notes, _ = read(whole)
     (part,) = scene.object.parts
     assert isinstance(part, Facets)
     assert re.match(r"'part' has 152 flat facets here, as in the mesh; .* they are about 0.0085 mm off", notes[0])
@@ -160,13 +159,13 @@ def test_a_great_rounding_stays(read):
 def test_too_many_fillets_stay(read, monkeypatch):
     """Open CASCADE would take minutes, and the file be refused."""
     monkeypatch.setattr(fillets, "MOST_FACES", 0)
-    scene, notes = read(bracket())
+    scene, notes, _ = read(bracket())
     assert isinstance(scene.object.parts[0], Facets)
     assert not any("hollow rounding" in note for note in notes)
 
 
 def test_a_part_without_fillets_stays_what_it_is(read):
-    scene, notes = read(block((-30, -20, 0), (30, 20, 10)))
+    scene, notes, _ = read(block((-30, -20, 0), (30, 20, 10)))
     (box,) = scene.object.parts
     assert isinstance(box, Box)
     assert box.pose_body_shape.position_m == pytest.approx((0, 0, 0.005), abs=1e-12)
@@ -176,7 +175,7 @@ def test_a_part_without_fillets_stays_what_it_is(read):
 def test_a_hole_across_a_shaft_is_facets_of_the_right_volume(read):
     """Open CASCADE's triangles leave a band of the wall out where they have no corners within it."""
     shaft = cut(pin((0, 0, 0), (0, 0, 1), 2.5, 30.0), pin((-10, 0, 10), (1, 0, 0), 1.264, 20.0))
-    scene, _ = read(shaft)
+    scene, _, _ = read(shaft)
     (part,) = scene.object.parts
     assert isinstance(part, Facets)
     assert shape_moments(part).volume_m3 == pytest.approx(564.782e-9, rel=1e-3)

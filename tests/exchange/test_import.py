@@ -179,7 +179,7 @@ def arm(tmp_path) -> Path:
 
 @pytest.mark.usefixtures("here")
 def test_a_foreign_model_is_read_and_what_it_loses_is_said(arm):
-    scene, notes = imported.imported(str(arm))
+    scene, notes, _ = imported.imported(str(arm))
     assert notes == (
         "joints stay where the model has them, of flap",
         "left out, as they touch nothing: shell",
@@ -231,7 +231,7 @@ def test_a_plane_has_no_end_and_is_under_the_object(arm):
 
 @pytest.mark.usefixtures("here")
 def test_bodies_are_chosen_by_name(arm):
-    scene, notes = imported.imported(str(arm), "flap", ["stand", "block"])
+    scene, notes, _ = imported.imported(str(arm), "flap", ["stand", "block"])
     assert scene.object.element_names == ("tongue",)
     assert [str(shape.name) for shape in scene.cage.shapes] == ["geom 2", "base"]
     with pytest.raises(SceneFileError, match=r"has no body 'flop'; its bodies: stand, block, flap"):
@@ -245,7 +245,7 @@ def test_bodies_are_chosen_by_name(arm):
 @pytest.mark.usefixtures("here")
 def test_a_body_without_a_name_is_called_by_its_number(arm):
     arm.write_text(ARM.replace('name="flap" ', ""))
-    scene, _ = imported.imported(str(arm), "body 3")
+    scene, _, _ = imported.imported(str(arm), "body 3")
     assert scene.object.element_names == ("tongue",)
     with pytest.raises(SceneFileError, match=r"its bodies: stand, block, body 3"):
         imported.imported(str(arm), "flap")

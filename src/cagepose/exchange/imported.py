@@ -10,14 +10,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cagepose.errors import FileProblem, SceneFileError
+from cagepose.errors import FileProblem, Problem, SceneFileError
 from cagepose.exchange.beside import read_beside, spoilt
 from cagepose.exchange.compile_model import compiled
 from cagepose.exchange.extra import mujoco
+from cagepose.exchange.imported_part import ImportedPart
 from cagepose.exchange.model_bodies import WORLD_BODY, ModelBodies
 from cagepose.exchange.model_friction import scene_friction
 from cagepose.exchange.model_text import ModelText, read_model_text
-from cagepose.exchange.solids_document import METRES, SOLIDS, kept_friction, solids_document
+from cagepose.exchange.solids_document import METRES, SceneData, kept_friction, solids_document
+from cagepose.exchange.source_solids import SOLIDS
 from cagepose.exchange.tolerances import VOLUME_NOT_CONVEX
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
 from cagepose.files.meshes.pieces import MOST_CORNERS
@@ -38,10 +40,11 @@ PLANE_OF_REACH = 20.0
 
 
 class Import(NamedTuple):
-    """A scene, and what of the file is not in it as it was, in sentences."""
+    """A scene, and what of the file is not in it as it was, in sentences; and of solids, what each was and is."""
 
     scene: Scene
     notes: tuple[str, ...]
+    parts: tuple[ImportedPart, ...] = ()
 
 
 def imported(source: str, object_name: str | None = None, cage_names: Sequence[str] = ()) -> Import:
@@ -65,16 +68,45 @@ def imported(source: str, object_name: str | None = None, cage_names: Sequence[s
         There is no MuJoCo, or what reads solids.
     """
     is_solids = Path(source).suffix.lower() in SOLIDS
-    if any("\udc80" <= letter <= "\udcff" for letter in os.path.abspath(source)):  # the bytes of no UTF-8
-        message = "has a name, or is in a folder, whose letters are no UTF-8; rename it"
-        raise SceneFileError([FileProblem((), message, source)])
+    check_name(source)
     try:
-        document, notes = (solids_document if is_solids else _model_document)(source, object_name, cage_names)
+        read = solids_document if is_solids else _model_document
+        data = SceneData(*read(source, object_name, cage_names))
     except OSError as error:
         message = f"cannot be read ({error.strerror or error}); check the names of its files and their permissions"
         raise SceneFileError([FileProblem((), message, source)]) from None
-    scene = SceneText("", YamlSource(document, source), Path(source).parent).scene_file().scene
-    return Import(scene, tuple(dict.fromkeys(notes)))
+    return import_of(data, source)
+
+
+def check_name(source: str) -> None:
+    """Refuse a file whose name libraries cannot take."""
+    if any("\udc80" <= letter <= "\udcff" for letter in os.path.abspath(source)):  # the bytes of no UTF-8
+        message = "has a name, or is in a folder, whose letters are no UTF-8; rename it"
+        raise SceneFileError([FileProblem((), message, source)])
+
+
+def import_of(data: SceneData, source: str) -> Import:
+    """Return the scene of the data that were read from a file; a problem of a shape says which, by its name.
+
+    Raises
+    ------
+    SceneFileError
+        It cannot be right.
+    """
+    try:
+        scene = SceneText("", YamlSource(data.document, source), Path(source).parent).scene_file().scene
+    except SceneFileError as error:
+        raise SceneFileError([_by_name(problem, data.document, source) for problem in error.problems]) from None
+    return Import(scene, tuple(dict.fromkeys(data.notes)), data.parts)
+
+
+def _by_name(problem: Problem, document: Data, source: str) -> FileProblem:
+    """Return a problem with the name of the shape that it is about in place of its number."""
+    if problem.path[:1] not in (("object",), ("cage",)) or problem.path[1:2] != ("shapes",) or len(problem.path) < 3:
+        return FileProblem(problem.path, problem.message, source)
+    body, which = str(problem.path[0]), int(problem.path[2])
+    name = document[body]["shapes"][which]["name"]
+    return FileProblem((), f"{name!r} in the {body} {problem.message}", source)
 
 
 def _model_document(source: str, object_name: str | None, cage_names: Sequence[str]) -> tuple[Data, list[str]]:

@@ -4,8 +4,6 @@ VOLUME_NOT_CONVEX = 1e-3
 """Fraction of a hull's volume. A mesh that is less by more is not convex."""
 QUIET_OF_SIZE = 3e-7
 """In sizes of the scene. A window is quiet if no point moved by more."""
-SAME_VOLUME = 1e-7
-"""Fraction of the volume. Shapes that have it are the solid, and its triangles alone are off."""
 SAME_END = 1e-6
 """Fraction of a hole's radius. Ends of holes that are this near are one."""
 PAST_FACE = 1e-11

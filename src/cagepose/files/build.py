@@ -13,12 +13,14 @@ from numpy.typing import ArrayLike
 from cagepose.errors import Key, Problem, SceneError, key_path
 from cagepose.files.build_loads import load_of
 from cagepose.files.meshes.mesh_file import read_mesh
+from cagepose.files.meshes.mesh_shapes import MeshShapes
 from cagepose.files.points_file import PointsTable
 from cagepose.files.schema import BoxModel, SceneModel
 from cagepose.files.schema_base import PoseModel
 from cagepose.files.schema_cage import CageBodyModel
-from cagepose.files.schema_shapes import CoefficientModel, ShapeModel
+from cagepose.files.schema_shapes import CoefficientModel, MeshModel, ShapeModel
 from cagepose.files.schema_surfaces import SurfaceModel
+from cagepose.files.step import step_file
 from cagepose.files.triples import triples, whole_numbers, whole_triples
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.box import Box
@@ -204,12 +206,23 @@ class _Builder:
         assert model.mesh is not None
         path = self.folder / model.mesh.file
         try:
-            found = read_mesh(path, model.mesh.unit, self.unit, name)
+            found = self.body_in_file(path, model.mesh, name)
         except SceneError as error:
             raise SceneError([Problem(("file",), f"{path} {error.problems[0].message}")]) from None
         self.notes += found.notes
         pose = self.shape_pose(model)
         return [shape.moved(pose @ shape.pose_body_shape) for shape in found.shapes]
+
+    def body_in_file(self, path: Path, model: MeshModel, name: str) -> MeshShapes:
+        if path.suffix.lower() not in step_file.SUFFIXES:
+            if model.solid is not None:
+                raise SceneError(
+                    [Problem((), "has no solids to choose from, being no STEP file; remove the key solid")]
+                )
+            return read_mesh(path, model.unit, self.unit, name)
+        if model.unit is not None:
+            raise SceneError([Problem((), "says its unit itself, as STEP files do; remove the key unit")])
+        return step_file.read_step_shapes(path, model.solid, name)
 
     def shape_pose(self, model: ShapeModel) -> Pose:
         return Pose(to_metres(model.position or [0.0, 0.0, 0.0], self.unit), euler_zyx=_radians(model.euler_zyx_deg))

@@ -83,13 +83,21 @@ class ConvexModel(Mapping):
 
 
 class MeshModel(Mapping):
-    """A body of triangles in a file of its own."""
+    """A body in a file of its own."""
 
     file: str = Field(
-        min_length=1, description="STL, OBJ, PLY or GLB file beside this one; closed.", examples=["part.stl"]
+        min_length=1, description="STEP, STL, OBJ, PLY or GLB file beside this one; closed.", examples=["part.stl"]
     )
     unit: LengthUnit | None = Field(
-        None, description="Of the file's lengths; left out: that of this scene, and metres of a GLB.", examples=["mm"]
+        None,
+        description="Of the file's lengths; left out: that of this scene, and metres of a GLB. STEP files say theirs.",
+        examples=["mm"],
+    )
+    solid: str | None = Field(
+        None,
+        min_length=1,
+        description="Which solid of a STEP file, by its name; left out: all of them as one body.",
+        examples=["pin"],
     )
 
 

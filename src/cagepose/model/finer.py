@@ -35,7 +35,7 @@ def finer(
         mine = (one == first) & (other == second)
         known = [surfaces[k] for k in {first, second} if k >= 0]
         if any(surface.is_round for surface in known):
-            middles[mine] = _onto(middles[mine], known)
+            middles[mine] = onto(middles[mine], known)
     n = len(vertices_m)
     a, b, c = triangles.T
     ab, bc, ca = n + which.T
@@ -43,7 +43,7 @@ def finer(
     return np.concatenate([vertices_m, middles]), divided.transpose(2, 0, 1).reshape(-1, 3), np.repeat(on, 4)
 
 
-def _onto(places: FloatArray, surfaces: Sequence[Surface]) -> FloatArray:
+def onto(places: FloatArray, surfaces: Sequence[Surface]) -> FloatArray:
     """Return places moved the shortest way onto one or two surfaces, by Newton's method."""
     if len(surfaces) == 1:
         (surface,) = surfaces

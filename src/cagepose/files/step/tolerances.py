@@ -6,3 +6,5 @@ LEAST_TAKEN = 1e-9
 """Fraction of the volume. Less than this is nothing that was taken away."""
 SAME_OF_SIZE = 1e-7
 """Fraction of the size. Places and moments that are this near are one."""
+SAME_VOLUME = 1e-7
+"""Fraction of the volume. Shapes that have it are the solid, and its triangles alone are off."""

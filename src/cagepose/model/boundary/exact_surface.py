@@ -70,8 +70,7 @@ class ExactSurface(NamedTuple):
 
 def exact_block(shape: Facets, number: int) -> Block:
     """Return the features of a body, in the frame of its shape's body; ``number`` is that of the part."""
-    surfaces = [surface.changed(1.0, shape.pose_body_shape) for surface in shape.surfaces]
-    surface = _surface_of(shape.nodes_body(), shape.triangles, surfaces, shape.on, shape.flat_m)
+    surface = surface_of(shape)
     edges, borders = _edges(surface, number), _pieces(surface)
     faces, n_open = _faces(surface, borders, number)
     union = TrimmedUnion(corners_of(surface, number), edges, faces, n_open)
@@ -89,10 +88,12 @@ def exact_block(shape: Facets, number: int) -> Block:
     return with_rows(union_block(union, frozenset((number,))), rows)
 
 
-def _surface_of(
-    vertices_m: FloatArray, triangles: IntArray, surfaces: Sequence[Surface], on: IntArray, flat_m: float
-) -> ExactSurface:
-    """Return a surface with its curves. A ball that anything but circles trims, or a hollow one, stays facets."""
+def surface_of(shape: Facets) -> ExactSurface:
+    """Return a surface with its curves in the frame of its body. A ball that anything but circles trims, or a hollow
+    one, stays facets.
+    """
+    surfaces = [surface.changed(1.0, shape.pose_body_shape) for surface in shape.surfaces]
+    vertices_m, triangles, on, flat_m = shape.nodes_body(), shape.triangles, shape.on, shape.flat_m
     twins = twins_of(vertices_m, triangles)
     kept = np.array([not (surface.kind == SPHERE and surface.radius_m < 0.0) for surface in surfaces])
     while True:

@@ -1,0 +1,144 @@
+"""Files of single parts joined to a scene: `joined`. One is the object, the others are the cage."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple, Self
+
+from cagepose.errors import FileProblem, SceneError, SceneFileError
+from cagepose.exchange.imported import Import, check_name, import_of
+from cagepose.exchange.imported_part import ImportedPart
+from cagepose.exchange.solids_document import METRES, SceneData, with_weight_alone
+from cagepose.exchange.solids_note import read_solids_note
+from cagepose.exchange.source_solids import SOLIDS, SourceSolid, source_solids
+from cagepose.files.meshes.mesh_file import refused
+from cagepose.files.progress import tell
+from cagepose.files.step.reader import UNNAMED
+from cagepose.files.units import to_metres
+from cagepose.model.pose import Pose
+
+Data = dict[str, Any]
+
+PLACED = re.compile(r"(.+)@([-+.,\deE ]+)", re.DOTALL)
+"""A file and where it is, as the command line has it."""
+
+
+class PlacedFile(NamedTuple):
+    """A file, and where what it holds is in the world: left out, where its own coordinates say."""
+
+    file: str
+    pose: Pose = Pose()
+
+    @classmethod
+    def of(cls, text: str) -> Self:
+        """Return what "FILE", "FILE@x,y,z" or "FILE@x,y,z,yaw,pitch,roll" says, in millimetres and degrees.
+
+        Raises
+        ------
+        SceneFileError
+            Other numbers behind the @.
+        """
+        found = PLACED.fullmatch(text)
+        if found is None:
+            return cls(text)
+        try:
+            numbers = [float(number) for number in found[2].split(",")]
+        except ValueError:
+            numbers = []
+        if len(numbers) not in (3, 6) or not all(map(math.isfinite, numbers)):
+            message = f"is placed at {found[2]!r}; give x,y,z in mm, or x,y,z,yaw,pitch,roll in mm and deg"
+            raise SceneFileError([FileProblem((), message, found[1])])
+        turn = [math.radians(angle) for angle in numbers[3:]] or None
+        return cls(found[1], Pose(to_metres(numbers[:3], "mm"), euler_zyx=turn))
+
+
+def joined(held: PlacedFile, cage: Sequence[PlacedFile]) -> Import:
+    """Read files of solids (STEP, STL, OBJ, PLY, GLB), each all of what it holds; what takes seconds is told, see
+    `cagepose.files.progress`.
+
+    Parameters
+    ----------
+    held
+        The object.
+    cage
+        What holds it, one file at least. A file may stand there several times, at several places.
+
+    Raises
+    ------
+    SceneFileError
+        Files that cannot be used, or a scene that cannot be right.
+    MissingExtraError
+        What reads one of them is not installed.
+    """
+    data = _Joiner(held, cage).data()
+    return import_of(data, held.file)
+
+
+class _Joiner:
+    def __init__(self, held: PlacedFile, cage: Sequence[PlacedFile]) -> None:
+        self.held, self.cage = held, cage
+        self.notes: list[str] = []
+        self.names: set[str] = set()
+        self.read: dict[str, list[SourceSolid]] = {}
+
+    def data(self) -> SceneData:
+        try:
+            parts = self.parts("object", self.held, Pose())
+            walls = [part for placed in self.cage for part in self.parts("cage", placed, placed.pose)]
+        finally:
+            tell("")
+        found: Data = {"name": f"{Path(self.held.file).stem} in {Path(self.cage[0].file).stem}"}
+        found["units"] = {"length": "m"}
+        found["object"] = {"shapes": _shapes(parts), "pose": METRES.pose(self.held.pose)}
+        found["cage"] = {"shapes": _shapes(walls)}
+        self.notes += [note for part in (*parts, *walls) for note in part.notes]
+        return SceneData(with_weight_alone(found, self.notes), self.notes, (*parts, *walls))
+
+    def parts(self, body: str, placed: PlacedFile, frame: Pose) -> list[ImportedPart]:
+        """Return what the solids of a file are in a body."""
+        file = placed.file
+        check_name(file)
+        path = Path(file)
+        try:
+            if path.suffix.lower() not in SOLIDS:
+                listed = ", ".join(SOLIDS)
+                raise refused(f"is none of the files that can be joined ({listed}); import it alone, and name bodies")
+            if file not in self.read:
+                self.read[file] = self.solids(path)
+            solids = self.read[file]
+            return [solid.part(body, self.name(solid, path, len(solids) == 1), frame) for solid in solids]
+        except SceneError as error:
+            raise SceneFileError([FileProblem((), problem.message, file) for problem in error.problems]) from None
+        except OSError as error:
+            message = f"cannot be read ({error.strerror or error}); check its name and its permissions"
+            raise SceneFileError([FileProblem((), message, file)]) from None
+
+    def solids(self, path: Path) -> list[SourceSolid]:
+        said: list[str] = []
+        note = read_solids_note(path, said)
+        solids = source_solids(path, said, is_ours=bool(note))
+        if note:
+            said.append("loads, points and poses that cagepose kept in it are not taken where files are joined")
+        self.notes += [f"{path.name}: {one}" for one in said]
+        if not solids:
+            raise refused("has no solid; export it as one")
+        return solids
+
+    def name(self, solid: SourceSolid, path: Path, is_alone: bool) -> str:
+        """Return a name for a solid that no other has: its own, and before it that of its file, if that has several."""
+        own = solid.name if solid.is_step and solid.name != f"{UNNAMED} 1" else path.stem
+        name = own if is_alone else f"{path.stem}/{solid.name}"
+        number = next(k for k in range(1, len(self.names) + 2) if _numbered(name, k) not in self.names)
+        self.names.add(_numbered(name, number))
+        return _numbered(name, number)
+
+
+def _numbered(name: str, number: int) -> str:
+    return name if number == 1 else f"{name} {number}"
+
+
+def _shapes(parts: Sequence[ImportedPart]) -> list[Data]:
+    return [METRES.shape(shape) for part in parts for shape in part.shapes]

@@ -1,0 +1,112 @@
+"""A STEP file as the shapes of a scene: `read_step_shapes`."""
+
+from __future__ import annotations
+
+import os
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, cast
+
+from cagepose.files.meshes.mesh_file import refused, scaled
+from cagepose.files.meshes.mesh_shapes import MeshShapes
+from cagepose.files.progress import tell
+from cagepose.files.step.kept_shapes import KeptShape, KeptShapes, keep, kept
+from cagepose.files.step.solid_shapes import solid_shapes
+from cagepose.files.step.solids import read_step
+from cagepose.files.units import to_metres
+from cagepose.model.wording import few
+
+Data = dict[str, Any]
+
+SUFFIXES = (".step", ".stp")
+MAX_STEP_BYTES = 32 * 1024 * 1024
+FILES_KEPT = 16
+"""STEP files that are not read again for each scene of a study, and for each of their solids."""
+
+
+def read_step_shapes(path: Path, solid: str | None, name: str) -> MeshShapes:
+    """Return the shapes that a STEP file is, in metres, where they are in the file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    solid
+        The one that is meant, or what the names of some begin with before a "/"; None: all are one body.
+    name
+        Of the shapes. If they are of several solids, the name of each stands behind it: "NAME/SOLID".
+
+    Raises
+    ------
+    SceneError
+        A file that cannot be used, or has no such solid; the message begins with what is wrong.
+    MissingExtraError
+        What reads it is not installed.
+    """
+    try:
+        found = path.stat()
+        return _shapes(os.fspath(path), found.st_mtime_ns, found.st_size, solid, name)
+    except FileNotFoundError:
+        raise refused("is no file; check the name and the folder") from None
+    except OSError as error:
+        raise refused(f"cannot be read ({error.strerror or error}); check its permissions") from None
+    finally:
+        tell("")
+
+
+@lru_cache(maxsize=64)
+def _shapes(file: str, changed: int, n_bytes: int, solid: str | None, name: str) -> MeshShapes:
+    path = Path(file)
+    found = kept(path, solid, name)
+    if found is None:
+        found = _of_solids(_solids(file, changed, n_bytes), solid, name)
+        keep(path, solid, name, found)
+    return MeshShapes(found.shapes, found.off_m, found.notes)
+
+
+@lru_cache(maxsize=FILES_KEPT)
+def _solids(file: str, _changed: int, _n_bytes: int) -> Data:
+    return read_step_file(Path(file))
+
+
+def _of_solids(read: Data, wanted: str | None, name: str) -> KeptShapes:
+    solids = {
+        own: solid
+        for own, solid in named_solids(read).items()
+        if wanted is None or own == wanted or own.startswith(f"{wanted}/")
+    }
+    if not solids:
+        listed = few(list(named_solids(read)), 12)
+        raise refused(f"has no solid {wanted!r}; its solids: {listed}" if listed else "has no solid; export it as one")
+    notes = [f"left out: {few(read['out'], 12)}"] if read["out"] else []
+    alone = len(solids) == 1
+    made = [solid_shapes(name if alone else f"{name}/{own}", solid) for own, solid in solids.items()]
+    notes += [note for one in made for note in one.notes]
+    metres = float(to_metres(1.0, "mm"))
+    shapes = tuple(scaled(shape, metres) for one in made for shape in one.shapes)
+    return KeptShapes(cast(tuple[KeptShape, ...], shapes), metres * max(one.error for one in made), tuple(notes))
+
+
+def named_solids(read: Data) -> dict[str, Data]:
+    """Return the solids of a file by their names, which are numbered where several have the same."""
+    found: dict[str, Data] = {}
+    for solid in read["solids"]:
+        name = solid["name"]
+        found[name if name not in found else f"{name} {len(found) + 1}"] = solid
+    return found
+
+
+def read_step_file(path: Path) -> Data:
+    """As `cagepose.files.step.solids.read_step`, of a file that may not be there, or be too large.
+
+    Raises
+    ------
+    SceneError
+        It is such a file, or as `read_step`.
+    """
+    if not path.is_file():
+        raise refused("is no file; check the name and the folder")
+    if path.stat().st_size > MAX_STEP_BYTES:
+        raise refused(f"is larger than {MAX_STEP_BYTES // 1024**2} MiB; export the parts that touch alone")
+    tell(f"{path.name}: read by Open CASCADE")
+    return read_step(path)
