@@ -24,8 +24,8 @@ class OnSurfaces(NamedTuple):
 
 
 def facets_on_surfaces(solid: dict[str, Any], name: str) -> OnSurfaces:
-    """Return a solid's triangles, which stand for its planes, cylinders, cones and spheres; other faces are flat facets,
-    and curves that are no lines or circles are chains of short edges.
+    """Return a solid's triangles, which stand for its planes, cylinders, cones and spheres; other faces are flat
+    facets, and curves that are no lines or circles are chains of short edges.
 
     Parameters
     ----------

@@ -211,6 +211,9 @@ def cones_at(
     All edges lead to one side of a corner's planes, hollow ones too. The body lies to that side if those that bound the
     cone of its normals are convex; at the tip of a pit it lies to the other one.
     """
+    if len(tangents.places) == 0:
+        empty = np.zeros(0, np.int64)
+        return Vertices(np.zeros((0, 3)), empty, empty, np.zeros((0, 3)), np.zeros(0))
     order = np.argsort(tangents.places, kind="stable")
     places, n_tangents = np.unique(tangents.places[order], return_counts=True)
     lasts, directions = np.cumsum(n_tangents), tangents.directions[order]

@@ -23,7 +23,9 @@ Rows = tuple[NDArray[np.void], NDArray[np.void], FloatArray]
 def union_block(union: TrimmedUnion, apart_from: frozenset[int]) -> Block:
     """Return the features of a union."""
     lengths = np.linalg.norm(union.edges.ends_m - union.edges.starts_m, axis=1)
-    blocks = [_vertices(union.vertices), _edges(union.edges, lengths), _faces(union.faces)]
+    blocks = [_vertices(union.vertices), _edges(union.edges, lengths)]
+    if len(union.faces.normals) > 0:
+        blocks.append(_faces(union.faces))
     n_bounds = 0
     for features, bounds, _ in blocks:
         features["first_bound"] += n_bounds
