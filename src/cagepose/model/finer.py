@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.model.checks import FloatArray
 from cagepose.model.sides import IntArray
@@ -41,6 +42,15 @@ def finer(
     ab, bc, ca = n + which.T
     divided = np.stack([(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)], axis=0)
     return np.concatenate([vertices_m, middles]), divided.transpose(2, 0, 1).reshape(-1, 3), np.repeat(on, 4)
+
+
+def beside_round(triangles: IntArray, surfaces: Sequence[Surface], on: IntArray) -> NDArray[np.bool_]:
+    """Return which triangles stand for what is round, or have a side in common with one that does, (m,)."""
+    is_round: NDArray[np.bool_] = np.array([*(surface.is_round for surface in surfaces), False])[on]
+    sides = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2)
+    keys = sides[..., 0] * (int(triangles.max(initial=0)) + 1) + sides[..., 1]
+    found: NDArray[np.bool_] = np.isin(keys, keys[is_round]).any(axis=1)
+    return found
 
 
 def onto(places: FloatArray, surfaces: Sequence[Surface]) -> FloatArray:

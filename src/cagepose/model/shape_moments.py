@@ -19,14 +19,14 @@ import numpy as np
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.facets import Facets
-from cagepose.model.finer import finer
+from cagepose.model.finer import beside_round, finer
 from cagepose.model.hull import Hull
 from cagepose.model.shapes import Convex, Rounded, Shape, Turned
 from cagepose.model.surface import LEAST_SEGMENTS, Mesh, mesh_in_own_frame
 from cagepose.model.volume import VolumeMoments
 
-HALVINGS = 3
-"""Of the sides of triangles that stand for what is round."""
+MOST_HALVINGS, MOST_TRIANGLES = 3, 200_000
+"""Of the sides of triangles that stand for what is round, as long as there are no more triangles then."""
 
 
 class Sums(NamedTuple):
@@ -96,16 +96,18 @@ def _facets_moments(shape: Facets) -> VolumeMoments:
     """
     origin = shape.vertices_m.mean(axis=0)
     mesh, on = mesh_in_own_frame(shape, LEAST_SEGMENTS), shape.on
+    is_curved = beside_round(mesh.triangles, shape.surfaces, on)
+    flat = mesh_sums(Mesh(mesh.vertices_m, mesh.triangles[~is_curved]), origin)
+    mesh, on = Mesh(mesh.vertices_m, mesh.triangles[is_curved]), on[is_curved]
     rows = [mesh_sums(mesh, origin)]
-    if any(surface.is_round for surface in shape.surfaces):
-        for _ in range(HALVINGS):
-            vertices, triangles, on = finer(mesh.vertices_m, mesh.triangles, shape.surfaces, on)
-            mesh = Mesh(vertices, triangles)
-            rows.append(mesh_sums(mesh, origin))
+    while rows[-1].volume != 0.0 and len(rows) <= MOST_HALVINGS and 4 * len(mesh.triangles) <= MOST_TRIANGLES:
+        vertices, triangles, on = finer(mesh.vertices_m, mesh.triangles, shape.surfaces, on)
+        mesh = Mesh(vertices, triangles)
+        rows.append(mesh_sums(mesh, origin))
     for order in range(1, len(rows)):
         share = 1.0 / (4.0**order - 1.0)
         rows = [fine.times(1.0 + share) + coarse.times(-share) for coarse, fine in pairwise(rows)]
-    return rows[0].moments(origin)
+    return (flat + rows[0]).moments(origin)
 
 
 def _turned_moments(shape: Turned) -> VolumeMoments:
