@@ -6,7 +6,10 @@ import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from shlex import quote
 from typing import Any, NamedTuple, Self
+
+import numpy as np
 
 from cagepose.errors import FileProblem, SceneError, SceneFileError
 from cagepose.exchange.imported import Import, check_name, import_of
@@ -14,11 +17,13 @@ from cagepose.exchange.imported_part import ImportedPart
 from cagepose.exchange.solids_document import METRES, SceneData, with_weight_alone
 from cagepose.exchange.solids_note import read_solids_note
 from cagepose.exchange.source_solids import SOLIDS, SourceSolid, source_solids
+from cagepose.exchange.stl import MM_PER_M
 from cagepose.files.meshes.mesh_file import refused
 from cagepose.files.progress import tell
 from cagepose.files.step.reader import UNNAMED
 from cagepose.files.units import to_metres
 from cagepose.model.pose import Pose
+from cagepose.model.wording import coordinates
 
 Data = dict[str, Any]
 
@@ -74,7 +79,20 @@ def joined(held: PlacedFile, cage: Sequence[PlacedFile]) -> Import:
         What reads one of them is not installed.
     """
     data = _Joiner(held, cage).data()
-    return import_of(data, held.file)
+    try:
+        return import_of(data, held.file)
+    except SceneFileError as error:
+        reaches = [_reach(data.parts, placed, body) for placed, body in ((held, "object"), (cage[0], "cage"))]
+        raise SceneFileError([*error.problems, *reaches]) from None
+
+
+def _reach(parts: Sequence[ImportedPart], placed: PlacedFile, body: str) -> FileProblem:
+    """Return where what is joined stands, which tells where else it could."""
+    pose = placed.pose if body == "object" else Pose()
+    corners = np.concatenate([pose.transform(part.surface.vertices) for part in parts if part.body == body])
+    low, high = (coordinates(MM_PER_M * end, 5) for end in (corners.min(axis=0), corners.max(axis=0)))
+    remedy = f"stand elsewhere with --{body} {quote(placed.file + '@x,y,z')}"
+    return FileProblem((), f"is of the {body}, which reaches from {low} to {high} mm; let it {remedy}", placed.file)
 
 
 class _Joiner:
