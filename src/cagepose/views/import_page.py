@@ -7,7 +7,6 @@ import os
 from base64 import b64encode
 from collections.abc import Sequence
 
-import cagepose
 from cagepose.exchange.import_summary import HEADINGS, summary_rows
 from cagepose.exchange.imported import Import
 from cagepose.exchange.tolerances import ROUNDING_OF_MEASURES
@@ -31,7 +30,6 @@ def write_import_page(found: Import, path: str | os.PathLike[str]) -> None:
         .get_template("import.jinja")
         .render(
             made_by=MADE_BY,
-            version=cagepose.__version__,
             scene=found.scene.name,
             headings=HEADINGS,
             rows=summary_rows(found.parts),
