@@ -22,6 +22,7 @@ from cagepose.files.meshes.mesh_file import refused
 from cagepose.files.progress import tell
 from cagepose.files.step.reader import UNNAMED
 from cagepose.files.units import to_metres
+from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
 from cagepose.model.wording import coordinates
 
@@ -89,8 +90,9 @@ def joined(held: PlacedFile, cage: Sequence[PlacedFile]) -> Import:
 def _reach(parts: Sequence[ImportedPart], placed: PlacedFile, body: str) -> FileProblem:
     """Return where what is joined stands, which tells where else it could."""
     pose = placed.pose if body == "object" else Pose()
-    corners = np.concatenate([pose.transform(part.surface.vertices) for part in parts if part.body == body])
-    low, high = (coordinates(MM_PER_M * end, 5) for end in (corners.min(axis=0), corners.max(axis=0)))
+    solid = [shape for part in parts if part.body == body for shape in part.shapes if not isinstance(shape, Hole)]
+    limits = MM_PER_M * np.array([shape.moved(pose @ shape.pose_body_shape).limits_m() for shape in solid])
+    low, high = coordinates(limits[:, 0].min(axis=0), 5), coordinates(limits[:, 1].max(axis=0), 5)
     remedy = f"stand elsewhere with --{body} {quote(placed.file + '@x,y,z')}"
     return FileProblem((), f"is of the {body}, which reaches from {low} to {high} mm; let it {remedy}", placed.file)
 
