@@ -9,9 +9,16 @@ from cyclopts import Parameter
 
 from cagepose.cli.options import FILE, FileName, refusal
 
+NO_FILE = "cagepose: import needs a FILE, or --object FILE and --cage FILE, to join files. See: cagepose import --help"
+
 
 def import_command(
-    file: Annotated[FileName, Parameter(help="MJCF, URDF, STEP, STL, OBJ, PLY or GLB file.")],
+    file: Annotated[
+        FileName | None,
+        Parameter(
+            help="MJCF, URDF, STEP, STL, OBJ, PLY or GLB file; left out: --object and --cage are files themselves."
+        ),
+    ] = None,
     /,
     *,
     out: Annotated[FileName, FILE, Parameter(name=("--out", "-o"), help="Scene file to write, such as scene.yaml.")],
@@ -19,7 +26,9 @@ def import_command(
         str | None,
         Parameter(
             help="The body that is held, with all that hangs on it; left out: the one that moves freely. Of solids, one"
-            " by its name, or all by what their names begin with before a /; left out: object."
+            " by its name, or all by what their names begin with before a /; left out: object. Without a FILE: a STEP,"
+            " STL, OBJ, PLY or GLB file, which stands where its own coordinates say, or FILE@x,y,z or"
+            " FILE@x,y,z,yaw,pitch,roll: turned by angles in degrees, then moved by millimetres."
         ),
     ] = None,
     cage: Annotated[
@@ -27,23 +36,59 @@ def import_command(
         Parameter(
             negative=(),
             show_default=False,
-            help="A body that holds it, with all that hangs on it; may be given several times. Left out: all others.",
+            help="A body that holds it, with all that hangs on it; may be given several times. Left out: all others."
+            " Without a FILE: a file, as for --object, which may be given again at another place.",
         ),
     ] = (),
+    report: Annotated[
+        FileName | None,
+        FILE,
+        Parameter(help="Page to write as well, such as report.html: what became of each solid, with pictures of both."),
+    ] = None,
 ) -> int:
-    """Read a model, write it as a scene, and say what is not in it as it was."""
+    """Read a model, or join files of solids, write it as a scene, and say what is not in it as it was."""
+    from cagepose.cli.import_summary import print_summary
     from cagepose.errors import printable
     from cagepose.exchange.imported import imported
+    from cagepose.exchange.joined import PlacedFile, joined
     from cagepose.files.saved_scene import check_can_save_scene, save_scene
 
+    if file is None and (object is None or not cage):
+        sys.stderr.write(NO_FILE + "\n")
+        return 2
+    if report is not None and (refused := _cannot_report(report)):
+        sys.stderr.write(refused + "\n")
+        return 2
     try:
         check_can_save_scene(out)
-        found = imported(file, object, cage)
+        if file is None:
+            found = joined(PlacedFile.of(str(object)), [PlacedFile.of(one) for one in cage])
+        else:
+            found = imported(file, object, cage)
         save_scene(found.scene, out)
     except OSError as error:
         sys.stderr.write(refusal(f"--out {out}", error) + "\n")
         return 2
     contents = f"{found.scene.object!r} {found.scene.cage!r}".replace("<", "").replace(">", ";").rstrip(";")
     sys.stdout.write(printable(f"wrote {out}: {contents}") + "\n")
+    print_summary(found.parts)
     sys.stdout.write("".join(printable(f"note: {note}") + "\n" for note in found.notes))
+    if report is not None:
+        from cagepose.views.import_page import write_import_page
+
+        write_import_page(found, report)
+        sys.stdout.write(printable(f"wrote {report}") + "\n")
     return 0
+
+
+def _cannot_report(report: str) -> str | None:
+    """Return why a page cannot be written there; None: it can."""
+    from cagepose.views.extra import require_import_page
+    from cagepose.views.output_files import check_output
+
+    require_import_page()
+    try:
+        check_output(report, (".html",))
+    except (OSError, ValueError) as error:
+        return refusal(f"--report {report}", error)
+    return None

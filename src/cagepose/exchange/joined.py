@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
+from shlex import quote
 from typing import Any, NamedTuple, Self
+
+import numpy as np
 
 from cagepose.errors import FileProblem, SceneError, SceneFileError
 from cagepose.exchange.imported import Import, check_name, import_of
@@ -14,14 +19,19 @@ from cagepose.exchange.imported_part import ImportedPart
 from cagepose.exchange.solids_document import METRES, SceneData, with_weight_alone
 from cagepose.exchange.solids_note import read_solids_note
 from cagepose.exchange.source_solids import SOLIDS, SourceSolid, source_solids
+from cagepose.exchange.stl import MM_PER_M
 from cagepose.files.meshes.mesh_file import refused
 from cagepose.files.progress import tell
 from cagepose.files.step.reader import UNNAMED
 from cagepose.files.units import to_metres
+from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
+from cagepose.model.wording import coordinates
 
 Data = dict[str, Any]
 
+READERS = 2
+"""Files that are read at once; each may take 2 GiB."""
 PLACED = re.compile(r"(.+)@([-+.,\deE ]+)", re.DOTALL)
 """A file and where it is, as the command line has it."""
 
@@ -74,58 +84,57 @@ def joined(held: PlacedFile, cage: Sequence[PlacedFile]) -> Import:
         What reads one of them is not installed.
     """
     data = _Joiner(held, cage).data()
-    return import_of(data, held.file)
+    try:
+        return import_of(data, held.file)
+    except SceneFileError as error:
+        reaches = [_reach(data.parts, placed, body) for placed, body in ((held, "object"), (cage[0], "cage"))]
+        raise SceneFileError([*error.problems, *reaches]) from None
+
+
+def _reach(parts: Sequence[ImportedPart], placed: PlacedFile, body: str) -> FileProblem:
+    """Return where what is joined stands, which tells where else it could."""
+    pose = placed.pose if body == "object" else Pose()
+    solid = [shape for part in parts if part.body == body for shape in part.shapes if not isinstance(shape, Hole)]
+    limits = MM_PER_M * np.array([shape.moved(pose @ shape.pose_body_shape).limits_m() for shape in solid])
+    low, high = coordinates(limits[:, 0].min(axis=0), 5), coordinates(limits[:, 1].max(axis=0), 5)
+    remedy = f"stand elsewhere with --{body} {quote(placed.file + '@x,y,z')}"
+    return FileProblem((), f"is of the {body}, which reaches from {low} to {high} mm; let it {remedy}", placed.file)
+
+
+class _Read(NamedTuple):
+    """The solids of a file, and what is not in them as it is there."""
+
+    solids: list[SourceSolid]
+    notes: list[str]
 
 
 class _Joiner:
     def __init__(self, held: PlacedFile, cage: Sequence[PlacedFile]) -> None:
         self.held, self.cage = held, cage
-        self.notes: list[str] = []
         self.names: set[str] = set()
-        self.read: dict[str, list[SourceSolid]] = {}
 
     def data(self) -> SceneData:
+        files = list(dict.fromkeys([self.held.file, *(placed.file for placed in self.cage)]))
         try:
-            parts = self.parts("object", self.held, Pose())
-            walls = [part for placed in self.cage for part in self.parts("cage", placed, placed.pose)]
+            with ThreadPoolExecutor(READERS) as pool:  # what reads has a process of its own
+                read = dict(zip(files, pool.map(_read, files), strict=True))
+            parts = self.parts("object", self.held, read, Pose())
+            walls = [part for placed in self.cage for part in self.parts("cage", placed, read, placed.pose)]
         finally:
             tell("")
+        notes = [f"{Path(file).name}: {note}" for file in files for note in read[file].notes]
+        notes += [note for part in (*parts, *walls) for note in part.notes]
         found: Data = {"name": f"{Path(self.held.file).stem} in {Path(self.cage[0].file).stem}"}
         found["units"] = {"length": "m"}
         found["object"] = {"shapes": _shapes(parts), "pose": METRES.pose(self.held.pose)}
         found["cage"] = {"shapes": _shapes(walls)}
-        self.notes += [note for part in (*parts, *walls) for note in part.notes]
-        return SceneData(with_weight_alone(found, self.notes), self.notes, (*parts, *walls))
+        return SceneData(with_weight_alone(found, notes), notes, (*parts, *walls))
 
-    def parts(self, body: str, placed: PlacedFile, frame: Pose) -> list[ImportedPart]:
+    def parts(self, body: str, placed: PlacedFile, read: dict[str, _Read], frame: Pose) -> list[ImportedPart]:
         """Return what the solids of a file are in a body."""
-        file = placed.file
-        check_name(file)
-        path = Path(file)
-        try:
-            if path.suffix.lower() not in SOLIDS:
-                listed = ", ".join(SOLIDS)
-                raise refused(f"is none of the files that can be joined ({listed}); import it alone, and name bodies")
-            if file not in self.read:
-                self.read[file] = self.solids(path)
-            solids = self.read[file]
+        path, solids = Path(placed.file), read[placed.file].solids
+        with _problems_of(placed.file):
             return [solid.part(body, self.name(solid, path, len(solids) == 1), frame) for solid in solids]
-        except SceneError as error:
-            raise SceneFileError([FileProblem((), problem.message, file) for problem in error.problems]) from None
-        except OSError as error:
-            message = f"cannot be read ({error.strerror or error}); check its name and its permissions"
-            raise SceneFileError([FileProblem((), message, file)]) from None
-
-    def solids(self, path: Path) -> list[SourceSolid]:
-        said: list[str] = []
-        note = read_solids_note(path, said)
-        solids = source_solids(path, said, is_ours=bool(note))
-        if note:
-            said.append("loads, points and poses that cagepose kept in it are not taken where files are joined")
-        self.notes += [f"{path.name}: {one}" for one in said]
-        if not solids:
-            raise refused("has no solid; export it as one")
-        return solids
 
     def name(self, solid: SourceSolid, path: Path, is_alone: bool) -> str:
         """Return a name for a solid that no other has: its own, and before it that of its file, if that has several."""
@@ -134,6 +143,34 @@ class _Joiner:
         number = next(k for k in range(1, len(self.names) + 2) if _numbered(name, k) not in self.names)
         self.names.add(_numbered(name, number))
         return _numbered(name, number)
+
+
+def _read(file: str) -> _Read:
+    check_name(file)
+    path, notes = Path(file), list[str]()
+    with _problems_of(file):
+        if path.suffix.lower() not in SOLIDS:
+            listed = ", ".join(SOLIDS)
+            raise refused(f"is none of the files that can be joined ({listed}); import it alone, and name bodies")
+        note = read_solids_note(path, notes)
+        solids = source_solids(path, notes, is_ours=bool(note))
+        if note:
+            notes.append("loads, points and poses that cagepose kept in it are not taken where files are joined")
+        if not solids:
+            raise refused("has no solid; export it as one")
+    return _Read(solids, notes)
+
+
+@contextmanager
+def _problems_of(file: str) -> Iterator[None]:
+    """Say of problems within which file they are of."""
+    try:
+        yield
+    except SceneError as error:
+        raise SceneFileError([FileProblem((), problem.message, file) for problem in error.problems]) from None
+    except OSError as error:
+        message = f"cannot be read ({error.strerror or error}); check its name and its permissions"
+        raise SceneFileError([FileProblem((), message, file)]) from None
 
 
 def _numbered(name: str, number: int) -> str:

@@ -8,3 +8,5 @@ SAME_END = 1e-6
 """Fraction of a hole's radius. Ends of holes that are this near are one."""
 PAST_FACE = 1e-11
 """Fraction of a part's size. Holes go on so far beyond their ends."""
+ROUNDING_OF_MEASURES = 1e-7
+"""Fraction of a volume, a moment or a size. What differs by less is the same, after the sums of two programs."""

@@ -60,6 +60,18 @@ def require_report() -> None:
     require("markdown_it", "the report needs markdown-it-py", "plot")
 
 
+def require_import_page() -> None:
+    """Do nothing if all is installed that a page about an import needs.
+
+    Raises
+    ------
+    MissingExtraError
+        As `require_pillow`.
+    """
+    require_pillow()
+    require("jinja2", "the page needs Jinja2", "plot")
+
+
 def require_study() -> None:
     """Do nothing if all is installed that studies of many runs need.
 

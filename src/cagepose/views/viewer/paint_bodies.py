@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,6 @@ from cagepose.views.solids import Solid, solid_of
 from cagepose.views.viewer.eye import Eye
 from cagepose.views.viewer.look import ink, lit
 from cagepose.views.viewer.raster import Keep, Raster
-from cagepose.views.viewer.stage import Stage
 
 DEPTH_BEYOND = 1e-4
 """Fraction of a hole's depth. A hole is cut so far beyond the face that it is in."""
@@ -30,10 +29,29 @@ class ShownHole(NamedTuple):
     widened: float
 
 
+class Room(Protocol):
+    """What places things in drawing coordinates, as a stage does.
+
+    Attributes
+    ----------
+    middle_world, size_m
+        Their origin, (3,), and their unit, metres.
+    """
+
+    @property
+    def middle_world(self) -> FloatArray: ...
+
+    @property
+    def size_m(self) -> float: ...
+
+    def place(self, points: FloatArray, /) -> FloatArray:
+        """Return drawing coordinates of points (..., 3) in metres."""
+
+
 class BodyPainter:
     """Paints shapes at poses, in metres, on a raster that has ``finer`` times the pixels of the eye's picture."""
 
-    def __init__(self, stage: Stage, eye: Eye, raster: Raster, finer: int) -> None:
+    def __init__(self, stage: Room, eye: Eye, raster: Raster, finer: int) -> None:
         self.stage, self.eye, self.raster, self.finer = stage, eye, raster, finer
 
     def pixels(self, places: FloatArray) -> FloatArray:

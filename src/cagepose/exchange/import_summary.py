@@ -1,0 +1,42 @@
+"""What solids became, beside what their files say, in words: `HEADINGS` and `summary_rows`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cagepose.exchange.imported_part import ImportedPart
+from cagepose.exchange.stl import MM_PER_M
+from cagepose.exchange.tolerances import ROUNDING_OF_MEASURES
+
+HEADINGS = ("part", "of", "is", "size mm", "volume mm3", "volume off", "centre off", "inertia off", "surface off")
+"""Size and volume are those of the source. How far what is here is off them, and its surface from that at most."""
+
+
+def summary_rows(parts: Sequence[ImportedPart]) -> list[tuple[str, ...]]:
+    """Return the cells of a row for each part, see `HEADINGS`."""
+    return [_row(part) for part in parts]
+
+
+def _row(part: ImportedPart) -> tuple[str, ...]:
+    size_m = float(part.source.size_m.max())
+    sides = " x ".join(f"{MM_PER_M * side:.5g}" for side in part.source.size_m)
+    return (
+        part.name,
+        part.body,
+        part.became,
+        sides,
+        f"{MM_PER_M**3 * part.source.volume_m3:.7g}",
+        _percent(part.volume_off),
+        _length(part.center_off_m, size_m),
+        _percent(part.gyration_off),
+        _length(part.off_m, size_m),
+    )
+
+
+def _percent(share: float) -> str:
+    return "0" if abs(share) < ROUNDING_OF_MEASURES else f"{100.0 * share:+.2g} %"
+
+
+def _length(length_m: float, size_m: float) -> str:
+    is_zero = length_m < ROUNDING_OF_MEASURES * size_m
+    return "0" if is_zero else f"{MM_PER_M * length_m:.2g} mm"
