@@ -40,6 +40,9 @@ def import_command(
             " Without a FILE: a file, as for --object, which may be given again at another place.",
         ),
     ] = (),
+    fillets: Annotated[
+        bool, Parameter(help="Whether hollow roundings of STEP files stay; else walls go on to where they meet.")
+    ] = True,
     report: Annotated[
         FileName | None,
         FILE,
@@ -62,9 +65,9 @@ def import_command(
     try:
         check_can_save_scene(out)
         if file is None:
-            found = joined(PlacedFile.of(str(object)), [PlacedFile.of(one) for one in cage])
+            found = joined(PlacedFile.of(str(object)), [PlacedFile.of(one) for one in cage], fillets=fillets)
         else:
-            found = imported(file, object, cage)
+            found = imported(file, object, cage, fillets=fillets)
         save_scene(found.scene, out)
     except OSError as error:
         sys.stderr.write(refusal(f"--out {out}", error) + "\n")

@@ -47,7 +47,9 @@ class Import(NamedTuple):
     parts: tuple[ImportedPart, ...] = ()
 
 
-def imported(source: str, object_name: str | None = None, cage_names: Sequence[str] = ()) -> Import:
+def imported(
+    source: str, object_name: str | None = None, cage_names: Sequence[str] = (), *, fillets: bool = True
+) -> Import:
     """Read a model; what takes seconds is told, see `cagepose.files.progress`.
 
     Parameters
@@ -59,6 +61,8 @@ def imported(source: str, object_name: str | None = None, cage_names: Sequence[s
         names, or what they begin with before a "/".
     cage_names
         Bodies that hold it, each with all that hangs on it; none: all others.
+    fillets
+        Whether hollow roundings of STEP files stay; else walls go on to where they meet.
 
     Raises
     ------
@@ -70,8 +74,10 @@ def imported(source: str, object_name: str | None = None, cage_names: Sequence[s
     is_solids = Path(source).suffix.lower() in SOLIDS
     check_name(source)
     try:
-        read = solids_document if is_solids else _model_document
-        data = SceneData(*read(source, object_name, cage_names))
+        if is_solids:
+            data = solids_document(source, object_name, cage_names, fillets=fillets)
+        else:
+            data = SceneData(*_model_document(source, object_name, cage_names))
     except OSError as error:
         message = f"cannot be read ({error.strerror or error}); check the names of its files and their permissions"
         raise SceneFileError([FileProblem((), message, source)]) from None

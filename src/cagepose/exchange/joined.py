@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from shlex import quote
 from typing import Any, NamedTuple, Self
@@ -65,7 +66,7 @@ class PlacedFile(NamedTuple):
         return cls(found[1], Pose(to_metres(numbers[:3], "mm"), euler_zyx=turn))
 
 
-def joined(held: PlacedFile, cage: Sequence[PlacedFile]) -> Import:
+def joined(held: PlacedFile, cage: Sequence[PlacedFile], *, fillets: bool = True) -> Import:
     """Read files of solids (STEP, STL, OBJ, PLY, GLB), each all of what it holds; what takes seconds is told, see
     `cagepose.files.progress`.
 
@@ -75,6 +76,8 @@ def joined(held: PlacedFile, cage: Sequence[PlacedFile]) -> Import:
         The object.
     cage
         What holds it, one file at least. A file may stand there several times, at several places.
+    fillets
+        Whether hollow roundings of STEP files stay; else walls go on to where they meet.
 
     Raises
     ------
@@ -83,7 +86,7 @@ def joined(held: PlacedFile, cage: Sequence[PlacedFile]) -> Import:
     MissingExtraError
         What reads one of them is not installed.
     """
-    data = _Joiner(held, cage).data()
+    data = _Joiner(held, cage).data(fillets=fillets)
     try:
         return import_of(data, held.file)
     except SceneFileError as error:
@@ -113,11 +116,11 @@ class _Joiner:
         self.held, self.cage = held, cage
         self.names: set[str] = set()
 
-    def data(self) -> SceneData:
+    def data(self, *, fillets: bool) -> SceneData:
         files = list(dict.fromkeys([self.held.file, *(placed.file for placed in self.cage)]))
         try:
             with ThreadPoolExecutor(READERS) as pool:  # what reads has a process of its own
-                read = dict(zip(files, pool.map(_read, files), strict=True))
+                read = dict(zip(files, pool.map(partial(_read, fillets=fillets), files), strict=True))
             parts = self.parts("object", self.held, read, Pose())
             walls = [part for placed in self.cage for part in self.parts("cage", placed, read, placed.pose)]
         finally:
@@ -145,7 +148,7 @@ class _Joiner:
         return _numbered(name, number)
 
 
-def _read(file: str) -> _Read:
+def _read(file: str, *, fillets: bool) -> _Read:
     check_name(file)
     path, notes = Path(file), list[str]()
     with _problems_of(file):
@@ -153,7 +156,7 @@ def _read(file: str) -> _Read:
             listed = ", ".join(SOLIDS)
             raise refused(f"is none of the files that can be joined ({listed}); import it alone, and name bodies")
         note = read_solids_note(path, notes)
-        solids = source_solids(path, notes, is_ours=bool(note))
+        solids = source_solids(path, notes, is_ours=bool(note), fillets=fillets)
         if note:
             notes.append("loads, points and poses that cagepose kept in it are not taken where files are joined")
         if not solids:

@@ -37,8 +37,11 @@ class SceneData(NamedTuple):
     parts: tuple[ImportedPart, ...] = ()
 
 
-def solids_document(source: str, object_name: str | None, cage_names: Sequence[str]) -> SceneData:
-    """Return the data of a scene of solids, and what is not in it as in the file.
+def solids_document(
+    source: str, object_name: str | None, cage_names: Sequence[str], *, fillets: bool = True
+) -> SceneData:
+    """Return the data of a scene of solids, and what is not in it as in the file; arguments as of
+    `cagepose.exchange.imported.imported`.
 
     Raises
     ------
@@ -51,7 +54,7 @@ def solids_document(source: str, object_name: str | None, cage_names: Sequence[s
     note = read_solids_note(path, notes)
     damaged = [*notes]
     try:
-        solids = {solid.name: solid for solid in source_solids(path, notes, is_ours=bool(note))}
+        solids = {solid.name: solid for solid in source_solids(path, notes, is_ours=bool(note), fillets=fillets)}
         held, walls = _chosen(source, list(solids), object_name, cage_names)
         left = [name for name in solids if name not in (*held, *walls)]
         if left:

@@ -14,8 +14,8 @@ from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.mended import mended
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
 from cagepose.files.step import step_file
-from cagepose.files.step.reader import CHORDS_OF_CIRCLE
 from cagepose.files.step.solid_shapes import rounded, solid_shapes
+from cagepose.files.step.triangles import CHORDS_OF_CIRCLE
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.surface import shape_mesh
@@ -92,9 +92,9 @@ class SourceSolid(NamedTuple):
         return found._replace(notes=(*closed, *found.notes))
 
 
-def source_solids(path: Path, notes: list[str], *, is_ours: bool = False) -> list[SourceSolid]:
-    """Return the solids of a file; ``notes`` are told what is left out. A file that ``is_ours`` is in
-    millimetres.
+def source_solids(path: Path, notes: list[str], *, is_ours: bool = False, fillets: bool = True) -> list[SourceSolid]:
+    """Return the solids of a file; ``notes`` are told what is left out. A file that ``is_ours`` is in millimetres.
+    ``fillets``: whether hollow roundings of STEP files stay.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def source_solids(path: Path, notes: list[str], *, is_ours: bool = False) -> lis
         What reads it is not installed.
     """
     if path.suffix.lower() in step_file.SUFFIXES:
-        read = step_file.read_step_file(path)
+        read = step_file.read_step_file(path, fillets=fillets)
         if read["out"]:
             notes.append(f"left out: {few(read['out'], 12)}")
         return [SourceSolid(name, solid) for name, solid in step_file.named_solids(read).items()]

@@ -222,7 +222,7 @@ class _Builder:
             return read_mesh(path, model.unit, self.unit, name)
         if model.unit is not None:
             raise SceneError([Problem((), "says its unit itself, as STEP files do; remove the key unit")])
-        return step_file.read_step_shapes(path, model.solid, name)
+        return step_file.read_step_shapes(path, model.solid, name, fillets=model.fillets)
 
     def shape_pose(self, model: ShapeModel) -> Pose:
         return Pose(to_metres(model.position or [0.0, 0.0, 0.0], self.unit), euler_zyx=_radians(model.euler_zyx_deg))

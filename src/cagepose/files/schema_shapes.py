@@ -99,6 +99,11 @@ class MeshModel(Mapping):
         description="Which solid of a STEP file, by its name; left out: all of them as one body.",
         examples=["pin"],
     )
+    fillets: bool = Field(
+        True,
+        description="Whether hollow roundings of a STEP file stay; else walls go on to where they meet.",
+        examples=[False],
+    )
 
 
 class FacetsModel(Mapping):

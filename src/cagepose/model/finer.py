@@ -49,8 +49,8 @@ def beside_round(triangles: IntArray, surfaces: Sequence[Surface], on: IntArray)
     is_round: NDArray[np.bool_] = np.array([*(surface.is_round for surface in surfaces), False])[on]
     sides = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2)
     keys = sides[..., 0] * (int(triangles.max(initial=0)) + 1) + sides[..., 1]
-    found: NDArray[np.bool_] = np.isin(keys, keys[is_round]).any(axis=1)
-    return found
+    is_side: NDArray[np.bool_] = np.isin(keys, keys[is_round])
+    return is_side[:, 0] | is_side[:, 1] | is_side[:, 2]
 
 
 def onto(places: FloatArray, surfaces: Sequence[Surface]) -> FloatArray:

@@ -102,13 +102,13 @@ def _joins_smoothly(face: Any) -> bool:
     return len(smooth) >= 2
 
 
-def moments_of(solid: Any) -> Any:
-    """Return what Open CASCADE says of a solid's volume, middle and inertia."""
+def moments_of(shape: Any, *, of_surface: bool = False) -> Any:
+    """Return what Open CASCADE says of a solid's volume, or of a surface's area, and of its middle and inertia."""
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
 
     found = GProp_GProps()
-    BRepGProp.VolumeProperties_s(solid, found)
+    (BRepGProp.SurfaceProperties_s if of_surface else BRepGProp.VolumeProperties_s)(shape, found)
     return found
 
 

@@ -17,7 +17,7 @@ from cagepose.model.shapes import AnyShape
 
 MOST_BYTES = 64 * 1024 * 1024
 """A file that holds more was not kept by us."""
-VERSION = 1
+VERSION = 2
 """Of the way from a solid to shapes; what an older one made is made anew."""
 
 
@@ -33,22 +33,24 @@ class KeptShapes:
     notes: tuple[str, ...]
 
 
-def kept(step_file: Path, solid: str | None, name: str) -> KeptShapes | None:
-    """Return what was kept of a solid under a name; None: nothing was, or the file is another by now.
+def kept(step_file: Path, key: str) -> KeptShapes | None:
+    """Return what was kept of a file under a key; None: nothing was, or the file is another by now.
 
     What somebody changed in it is checked as the shapes of any saved run are.
     """
-    record = _kept_of_file(step_file).get(_key(solid, name))
+    record = _kept_of_file(step_file).get(key)
     try:
         return None if record is None else from_record(KeptShapes, record)
     except ValueError:  # pydantic's errors, and ours within them
         return None
 
 
-def keep(step_file: Path, solid: str | None, name: str, found: KeptShapes) -> None:
-    """Keep the shapes of a solid. A folder that cannot be written keeps nothing."""
+def keep(step_file: Path, key: str, found: KeptShapes) -> None:
+    """Keep shapes of a file under a key, which says of what in it, and how they were made. A folder that cannot be
+    written keeps nothing.
+    """
     path = _beside(step_file)
-    everything = {**_kept_of_file(step_file), _key(solid, name): record_of(found)}
+    everything = {**_kept_of_file(step_file), key: record_of(found)}
     what = f"shapes of {step_file.name}, {MADE_BY}"
     content = json.dumps({"what": what, "of": _digest(step_file), "kept": everything}).encode()
     try:
@@ -72,10 +74,6 @@ def _kept_of_file(step_file: Path) -> dict[str, Any]:
 
 def _beside(step_file: Path) -> Path:
     return step_file.with_name(f"{step_file.name}.shapes.json")
-
-
-def _key(solid: str | None, name: str) -> str:
-    return json.dumps([solid, name])
 
 
 def _digest(step_file: Path) -> str:

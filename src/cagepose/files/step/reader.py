@@ -9,18 +9,13 @@ from typing import Any
 import numpy as np
 
 from cagepose.files.step.fillets import each, moments_of, without_fillets
-from cagepose.files.step.surfaces import farthest_off, one_of_each, surface_of_face
 from cagepose.files.step.tolerances import SAME_OF_SIZE
+from cagepose.files.step.triangles import off_volume, triangles_of
 from cagepose.model.shape_moments import shape_moments
 from cagepose.model.shapes import Convex
-from cagepose.model.surfaces import Surface
 
 Data = dict[str, Any]
 
-CHORDS_OF_CIRCLE = 64
-"""Chords of a full circle at least."""
-CHORD_OF_SIZE = 1e-2
-"""How far triangles may be from the surface, where that is less than `CHORDS_OF_CIRCLE` gives."""
 NO_NAME = "Open CASCADE STEP translator"
 """What names begin with that Open CASCADE gives where there is none."""
 UNNAMED = "solid"
@@ -39,7 +34,7 @@ def empty_document() -> tuple[Any, Any]:
     return document, XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
 
 
-def read_here(path: str) -> Data:
+def read_here(path: str, *, fillets: bool = True) -> Data:
     """As `cagepose.files.step.solids.read_step`, in this process.
 
     Raises
@@ -63,7 +58,7 @@ def read_here(path: str) -> Data:
     tool.GetFreeShapes(roots)
     solids: list[Data] = []
     out: list[str] = []
-    most_fillets = MOST_FILLETS
+    most_fillets = 0 if fillets else MOST_FILLETS
     for index in range(1, roots.Length() + 1):
         for name, shape in _leaves(roots.Value(index), TopLoc_Location(), ""):
             of_leaf = []
@@ -108,13 +103,13 @@ def _solid(solid: Any, most_fillets: int) -> Data:
     core = _rounded(faces, mass)
     if core is not None:
         return {**measures, **core}  # to make triangles of a ball takes 0.3 s
-    found = {**measures, **_triangles(solid, faces)}
+    found = {**measures, **triangles_of(solid)}
     if off_volume(found) > 0.0:  # holes across round walls come out so at times
-        found |= _triangles(solid, faces, within=True)
-    sharp = without_fillets(solid, faces, most_fillets)
+        found |= triangles_of(solid, within=True)
+    sharp = without_fillets(solid, faces, most_fillets) if most_fillets > 0 else None
     if sharp is not None:
         try:
-            without = _triangles(sharp.solid, [*each("Face", sharp.solid)])
+            without = triangles_of(sharp.solid)
         except ValueError:  # it stays as it is
             return found
         without["volume"] = abs(moments_of(sharp.solid).Mass())
@@ -186,108 +181,5 @@ def _rounded(faces: list[Any], mass: Any) -> Data | None:
     return {"core": core.tolist(), "radius": radii[0]} if is_it else None
 
 
-def _off(face: Any) -> float:
-    """Return how far the triangles of a face are off at most: the sagitta of their chords, along and across."""
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane, GeomAbs_Sphere, GeomAbs_Torus
-    from OCP.TopLoc import TopLoc_Location
-
-    surface = BRepAdaptor_Surface(face)
-    kind = surface.GetType()
-    if kind == GeomAbs_Plane:
-        return 0.0
-    if kind == GeomAbs_Cylinder:
-        radii = surface.Cylinder().Radius()
-    elif kind == GeomAbs_Cone:
-        ends, cone = (surface.FirstVParameter(), surface.LastVParameter()), surface.Cone()
-        radii = max(abs(cone.RefRadius() + end * np.sin(cone.SemiAngle())) for end in ends)
-    elif kind == GeomAbs_Sphere:
-        radii = 2.0 * surface.Sphere().Radius()
-    elif kind == GeomAbs_Torus:
-        radii = surface.Torus().MajorRadius() + 2.0 * surface.Torus().MinorRadius()
-    else:
-        return float(BRep_Tool.Triangulation_s(face, TopLoc_Location()).Deflection())
-    return float(radii * (1.0 - np.cos(np.pi / CHORDS_OF_CIRCLE)))
-
-
 def _xyz(point: Any) -> list[float]:
     return [point.X(), point.Y(), point.Z()]
-
-
-def _is_ball(face: Any) -> bool:
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane
-
-    return BRepAdaptor_Surface(face).GetType() not in (GeomAbs_Plane, GeomAbs_Cylinder, GeomAbs_Cone)
-
-
-def off_volume(solid: Data) -> float:
-    """Return by how much more than by their chords triangles enclose another volume than the solid, in its parts."""
-    corners = np.array(solid["vertices"])[np.array(solid["faces"])]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    volume = float(np.einsum("ij,ij->", corners[:, 0] - corners[0, 0], across)) / 6.0
-    allowed = solid["off"] * float(np.linalg.norm(across, axis=1).sum()) + SAME_OF_SIZE * solid["volume"]
-    off = abs(volume - solid["volume"])
-    return off / float(solid["volume"]) if off > allowed else 0.0
-
-
-def _triangles(solid: Any, faces: list[Any], *, within: bool = False) -> Data:
-    """Return triangles; ``within``: those that there are are made anew, with corners within faces."""
-    from OCP.Bnd import Bnd_Box
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepBndLib import BRepBndLib
-    from OCP.BRepMesh import BRepMesh_IncrementalMesh
-    from OCP.BRepTools import BRepTools
-    from OCP.IMeshTools import IMeshTools_Parameters
-    from OCP.TopAbs import TopAbs_REVERSED
-    from OCP.TopLoc import TopLoc_Location
-
-    # triangles as near to the surface as its size asks for
-    box = Bnd_Box()
-    BRepBndLib.Add_s(solid, box)
-    size = float(np.sqrt(box.SquareExtent()))
-    wanted = IMeshTools_Parameters()
-    wanted.Deflection, wanted.Angle = CHORD_OF_SIZE * size, 0.999 * 2.0 * np.pi / CHORDS_OF_CIRCLE
-    wanted.InternalVerticesMode = within or any(_is_ball(face) for face in faces)  # a cylinder needs none
-    wanted.ControlSurfaceDeflection = wanted.InternalVerticesMode
-    if within:
-        BRepTools.Clean_s(solid)
-    BRepMesh_IncrementalMesh(solid, wanted)
-    # the corners of each face by themselves
-    points: list[list[float]] = []
-    triangles: list[list[int]] = []
-    surfaces: list[Surface | None] = []
-    n_of_face: list[int] = []
-    for face in faces:
-        place = TopLoc_Location()
-        mesh = BRep_Tool.Triangulation_s(face, place)
-        if mesh is None:
-            raise ValueError("has a face that Open CASCADE cannot make triangles of; repair it, or export it again")
-        turn, first = place.Transformation(), len(points) - 1
-        nodes = [mesh.Node(index).Transformed(turn) for index in range(1, mesh.NbNodes() + 1)]
-        points += [_xyz(node) for node in nodes]
-        order = (1, 3, 2) if face.Orientation() == TopAbs_REVERSED else (1, 2, 3)
-        for index in range(1, mesh.NbTriangles() + 1):
-            triangle = mesh.Triangle(index)
-            triangles.append([first + triangle.Value(corner) for corner in order])
-        n_of_face.append(mesh.NbTriangles())
-        own = np.array(points)[np.array(triangles[len(triangles) - mesh.NbTriangles() :])]
-        surfaces.append(surface_of_face(face, own))
-    # corners that faces share are one
-    _, kept, same = np.unique(
-        np.round(np.array(points) / (1e-8 * size)), axis=0, return_index=True, return_inverse=True
-    )
-    corners = same.ravel()[np.array(triangles)]
-    distinct = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
-    known, which = one_of_each(surfaces, size)
-    on, vertices = np.repeat(which, n_of_face)[distinct], np.array(points)[kept]
-    return {
-        "vertices": vertices.tolist(),
-        "faces": corners[distinct].tolist(),
-        "off": max(_off(face) for face in faces),
-        "surfaces": known,
-        "on": on.tolist(),
-        "off_surfaces": farthest_off(known, on, vertices[corners[distinct]]),
-        "off_others": max((_off(face) for face, found in zip(faces, which, strict=True) if found < 0), default=0.0),
-    }

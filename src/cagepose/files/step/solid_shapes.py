@@ -13,8 +13,8 @@ from cagepose.files.meshes.mended import mended
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
 from cagepose.files.meshes.surface_distance import farthest_from
 from cagepose.files.step.exact_facets import facets_on_surfaces
-from cagepose.files.step.reader import off_volume
 from cagepose.files.step.tolerances import SAME_VOLUME
+from cagepose.files.step.triangles import off_volume
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.shape_moments import shape_moments

@@ -17,10 +17,17 @@ CPU_SECONDS, WALL_SECONDS = 8, 60.0
 """Limits of the process; the start of Open CASCADE is one second of it."""
 
 
-def read_step(path: Path) -> Data:
+def read_step(path: Path, *, fillets: bool = True) -> Data:
     """Return the ``solids`` of a file, each with ``name``, and ``vertices`` and ``faces`` of its triangles, and
-    ``volume``, or the ``core`` of a rounded hull and its ``radius``; and what was left ``out``, in words. One with
-    ``n_fillets`` in its hollow corners, ``radius`` at most, is ``sharp`` there without them.
+    ``volume``, or the ``core`` of a rounded hull and its ``radius``; and what was left ``out``, in words.
+
+    Triangles stand for surfaces: these are ``known``, and each triangle is ``on`` one, -1: on another that is none of
+    `cagepose.model.surfaces`. Corners are ``off_surfaces``, and triangles on others ``off_others``, by so much at most.
+
+    Parameters
+    ----------
+    fillets
+        False: one with ``n_fillets`` in its hollow corners, ``radius`` at most, is ``sharp`` there without them.
 
     Raises
     ------
@@ -30,12 +37,17 @@ def read_step(path: Path) -> Data:
         Open CASCADE is not installed.
     """
     require("OCP", "STEP files need Open CASCADE", "cad")
-    found: Data = json.loads(ask(__name__, os.fsencode(path.resolve()), WALL_SECONDS, "Open CASCADE"))
+    found: Data = json.loads(ask(__name__, _task(path, fillets=fillets), WALL_SECONDS, "Open CASCADE"))
     return found
 
 
-def _answer(path: bytes) -> bytes:
-    return json.dumps(read_here(os.fsdecode(path))).encode()
+def _task(path: Path, *, fillets: bool) -> bytes:
+    return (b"with " if fillets else b"without ") + os.fsencode(path.resolve())
+
+
+def _answer(task: bytes) -> bytes:
+    fillets, _, path = task.partition(b" ")
+    return json.dumps(read_here(os.fsdecode(path), fillets=fillets == b"with")).encode()
 
 
 if __name__ == "__main__":

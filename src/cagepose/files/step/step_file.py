@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from functools import lru_cache
 from pathlib import Path
@@ -24,7 +25,7 @@ FILES_KEPT = 16
 """STEP files that are not read again for each scene of a study, and for each of their solids."""
 
 
-def read_step_shapes(path: Path, solid: str | None, name: str) -> MeshShapes:
+def read_step_shapes(path: Path, solid: str | None, name: str, *, fillets: bool = True) -> MeshShapes:
     """Return the shapes that a STEP file is, in metres, where they are in the file.
 
     Parameters
@@ -35,6 +36,8 @@ def read_step_shapes(path: Path, solid: str | None, name: str) -> MeshShapes:
         The one that is meant, or what the names of some begin with before a "/"; None: all are one body.
     name
         Of the shapes. If they are of several solids, the name of each stands behind it: "NAME/SOLID".
+    fillets
+        Whether hollow roundings stay; else walls go on to where they meet.
 
     Raises
     ------
@@ -45,7 +48,7 @@ def read_step_shapes(path: Path, solid: str | None, name: str) -> MeshShapes:
     """
     try:
         found = path.stat()
-        return _shapes(os.fspath(path), found.st_mtime_ns, found.st_size, solid, name)
+        return _shapes(os.fspath(path), found.st_mtime_ns, found.st_size, solid, name, fillets)
     except FileNotFoundError:
         raise refused("is no file; check the name and the folder") from None
     except OSError as error:
@@ -55,18 +58,19 @@ def read_step_shapes(path: Path, solid: str | None, name: str) -> MeshShapes:
 
 
 @lru_cache(maxsize=64)
-def _shapes(file: str, changed: int, n_bytes: int, solid: str | None, name: str) -> MeshShapes:
+def _shapes(file: str, changed: int, n_bytes: int, solid: str | None, name: str, fillets: bool) -> MeshShapes:
     path = Path(file)
-    found = kept(path, solid, name)
+    key = json.dumps([solid, name, fillets])
+    found = kept(path, key)
     if found is None:
-        found = _of_solids(_solids(file, changed, n_bytes), solid, name)
-        keep(path, solid, name, found)
+        found = _of_solids(_solids(file, changed, n_bytes, fillets), solid, name)
+        keep(path, key, found)
     return MeshShapes(found.shapes, found.off_m, found.notes)
 
 
 @lru_cache(maxsize=FILES_KEPT)
-def _solids(file: str, _changed: int, _n_bytes: int) -> Data:
-    return read_step_file(Path(file))
+def _solids(file: str, _changed: int, _n_bytes: int, fillets: bool) -> Data:
+    return read_step_file(Path(file), fillets=fillets)
 
 
 def _of_solids(read: Data, wanted: str | None, name: str) -> KeptShapes:
@@ -96,7 +100,7 @@ def named_solids(read: Data) -> dict[str, Data]:
     return found
 
 
-def read_step_file(path: Path) -> Data:
+def read_step_file(path: Path, *, fillets: bool = True) -> Data:
     """As `cagepose.files.step.solids.read_step`, of a file that may not be there, or be too large.
 
     Raises
@@ -109,4 +113,4 @@ def read_step_file(path: Path) -> Data:
     if path.stat().st_size > MAX_STEP_BYTES:
         raise refused(f"is larger than {MAX_STEP_BYTES // 1024**2} MiB; export the parts that touch alone")
     tell(f"{path.name}: read by Open CASCADE")
-    return read_step(path)
+    return read_step(path, fillets=fillets)

@@ -8,3 +8,5 @@ SAME_OF_SIZE = 1e-7
 """Fraction of the size. Places and moments that are this near are one."""
 SAME_VOLUME = 1e-7
 """Fraction of the volume. Shapes that have it are the solid, and its triangles alone are off."""
+SAME_PLACE = 1e-8
+"""Fraction of the size. Corners of different faces that are this near are one."""
