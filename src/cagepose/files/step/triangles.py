@@ -17,6 +17,8 @@ Data = dict[str, Any]
 
 CHORDS_OF_CIRCLE = 64
 """Chords of a full circle at least."""
+FARTHEST_APART = 1e-3
+"""Fraction of the size. Corners along one edge of two faces are one if they are no farther apart."""
 CHORD_OF_SIZE = 1e-2
 """How far triangles may be from the surface, where that is less than `CHORDS_OF_CIRCLE` gives."""
 
@@ -57,7 +59,7 @@ def triangles_of(solid: Any, *, within: bool = False) -> Data:
         n_points.append(n_points[-1] + len(own))
     # those that faces share are one
     places = np.concatenate(points)
-    same = _at_one_place(places, _shared(faces, n_points), SAME_PLACE * size)
+    same = _at_one_place(places, _shared(faces, n_points, places), SAME_PLACE * size)
     kept, number = np.unique(same, return_inverse=True)
     joined = number.ravel()[np.concatenate(triangles)]
     distinct = (joined != np.roll(joined, 1, axis=1)).all(axis=1)
@@ -74,7 +76,7 @@ def triangles_of(solid: Any, *, within: bool = False) -> Data:
     }
 
 
-def _shared(faces: list[Any], n_points: list[int]) -> list[tuple[int, int]]:
+def _shared(faces: list[Any], n_points: list[int], places: FloatArray) -> list[tuple[int, int]]:
     """Return pairs of corners that are one, as they are the same along an edge that two faces share, or that one has on
     both sides; and all corners of an edge that is but a point.
     """
@@ -95,7 +97,10 @@ def _shared(faces: list[Any], n_points: list[int]) -> list[tuple[int, int]]:
                 continue
             others = first_of_edges.setdefault(hash(edge), nodes)
             if len(others) == len(nodes):
-                found += [pair for pair in zip(others, nodes, strict=True) if pair[0] != pair[1]]
+                ways = nodes, nodes[::-1]
+                off = [np.abs(places[others] - places[way]).max() for way in ways]
+                if min(off) <= FARTHEST_APART * float(np.ptp(places, axis=0).max()):
+                    found += [pair for pair in zip(others, ways[off[1] < off[0]], strict=True) if pair[0] != pair[1]]
     return found
 
 
