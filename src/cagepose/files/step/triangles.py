@@ -100,7 +100,7 @@ def _shared(faces: list[Any], n_points: list[int], places: FloatArray) -> list[t
                 ways = nodes, nodes[::-1]
                 off = [np.abs(places[others] - places[way]).max() for way in ways]
                 if min(off) <= FARTHEST_APART * float(np.ptp(places, axis=0).max()):
-                    found += [pair for pair in zip(others, ways[off[1] < off[0]], strict=True) if pair[0] != pair[1]]
+                    found += [pair for pair in zip(others, ways[int(np.argmin(off))], strict=True) if pair[0] != pair[1]]
     return found
 
 
