@@ -194,7 +194,7 @@ def _readable(kind: Any, attribute: str) -> Any:
         return list.__class_getitem__(Annotated[choice, AfterValidator(_the_one)])
     origin, parts = get_origin(kind), get_args(kind)
     if origin is Annotated:
-        return _array(parts[1])
+        return _array(parts[1], int if get_args(parts[0])[1] == np.dtype[np.int64] else float)
     if origin is np.ndarray:
         return _array((3,))
     if origin is tuple:
@@ -215,17 +215,17 @@ def _the_one(choice: _Record) -> Any:
     return getattr(choice, next(iter(choice.model_fields_set)))
 
 
-def _array(shape: tuple[int, ...]) -> Any:
+def _array(shape: tuple[int, ...], number: type = float) -> Any:
     """Return the type of nested lists of numbers that become an array; -1 in ``shape`` stands for any length."""
-    rows: Any = float
+    rows: Any = number
     for length in reversed(shape):
         rows = list[rows] if length < 0 else Annotated[list[rows], Field(min_length=length, max_length=length)]
-    return Annotated[rows, AfterValidator(partial(_filled, shape))]
+    return Annotated[rows, AfterValidator(partial(_filled, shape, number))]
 
 
-def _filled(shape: tuple[int, ...], rows: list[Any]) -> np.ndarray:
+def _filled(shape: tuple[int, ...], number: type, rows: list[Any]) -> np.ndarray:
     """Return nested lists as an array; where they are empty, the lengths within them are those of ``shape``."""
-    found = np.array(rows, dtype=np.float64)
+    found: np.ndarray = np.array(rows, dtype=number)
     return found.reshape(found.shape + tuple(max(length, 0) for length in shape[found.ndim :]))
 
 

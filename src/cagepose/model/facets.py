@@ -55,10 +55,10 @@ class Facets(Shape):
     kind: ClassVar[str] = "facets"
     is_convex: ClassVar[bool] = False
     vertices_m: Annotated[FloatArray, (-1, 3)]
-    triangles: IntArray
+    triangles: Annotated[IntArray, (-1, 3)]
     flat_m: float
     surfaces: tuple[Surface, ...]
-    on: IntArray
+    on: Annotated[IntArray, (-1,)]
 
     def __init__(
         self,

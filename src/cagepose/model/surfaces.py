@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +18,8 @@ STEEPEST = 1e3
 """Slope of a cone: one that is flatter is a plane."""
 
 
-class Surface(NamedTuple):
+@dataclass(frozen=True)
+class Surface:
     """A surface without ends, in the frame of the shape that has it.
 
     Attributes
@@ -79,11 +81,16 @@ class Surface(NamedTuple):
         """Return it with lengths times a factor, and then moved."""
         point = pose.transform(factor * np.array(self.point_m))
         axis = pose.rotation @ np.array(self.axis)
-        return self._replace(point_m=tuple(point.tolist()), axis=tuple(axis.tolist()), radius_m=factor * self.radius_m)
+        return replace(self, point_m=_three(point), axis=_three(axis), radius_m=factor * self.radius_m)
+
+
+def _three(values: FloatArray) -> tuple[float, float, float]:
+    x, y, z = values.tolist()
+    return x, y, z
 
 
 def checked_surfaces(
-    surfaces: ArrayLike, surface_of: ArrayLike, n_triangles: int, problems: ProblemList
+    surfaces: Sequence[Surface], surface_of: ArrayLike, n_triangles: int, problems: ProblemList
 ) -> tuple[tuple[Surface, ...], NDArray[np.int64]]:
     """Return surfaces and which of them each triangle stands for, -1: none; note what cannot be."""
     found = tuple(surfaces) if isinstance(surfaces, tuple | list) else ()

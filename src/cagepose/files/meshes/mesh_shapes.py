@@ -69,13 +69,27 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str) -> MeshShapes:
     unit
         Of its lengths, for what is said.
     """
+    found = _shapes(mesh, name, unit, facets=True)
+    assert found is not None, "what is not known is facets"
+    return found
+
+
+def known_shapes(mesh: Triangles, name: str, unit: str) -> MeshShapes | None:
+    """As `mesh_shapes`; None: it would have facets."""
+    return _shapes(mesh, name, unit, facets=False)
+
+
+def _shapes(mesh: Triangles, name: str, unit: str, *, facets: bool) -> MeshShapes | None:
     middle = (mesh.vertices.max(axis=0) + mesh.vertices.min(axis=0)) / 2.0
     scale = 2.0 ** float(np.frexp(mesh.size)[1])
     body = without_rounding(Triangles((mesh.vertices - middle) / scale, mesh.faces).body())
     parts = []
     for part in separate(body):
         tell(f"{name!r}: {part.num_tri():,} triangles, its shape recognised")
-        parts.append(_shapes_of(part, is_coarse(mesh)))
+        made = _shapes_of(part, is_coarse(mesh), facets=facets)
+        if made is None:
+            return None
+        parts.append(made)
     found, holes = [one for part in parts for one in part.found], [one for part in parts for one in part.holes]
     error = scale * max([*(one.error for one in found), *(one.error for one in holes)])
     notes = []
@@ -93,16 +107,18 @@ def mesh_shapes(mesh: Triangles, name: str, unit: str) -> MeshShapes:
     return MeshShapes(tuple(shapes), error, tuple(notes))
 
 
-def _shapes_of(part: Any, coarse: bool) -> _Part:
-    """Return the shapes of a body that hangs together."""
+def _shapes_of(part: Any, coarse: bool, *, facets: bool) -> _Part | None:
+    """Return the shapes of a body that hangs together; None, where there are to be no ``facets``: it needs some."""
     whole, holes = filled(part)
     pieces = known_pieces(whole, [one.hole for one in holes])
     if pieces is not None and _are_in(holes, [one.shape for one in pieces]):
         return _Part(pieces, holes, 0.0)
+    if not facets:
+        return None
     if holes:
-        facets = facets_of(Triangles.of(whole), coarse=coarse)
-        if _are_in(holes, [facets]):
-            return _Part([Recognised(facets, 0.0)], holes, round_error(Triangles.of(whole)))
+        filled_in = facets_of(Triangles.of(whole), coarse=coarse)
+        if _are_in(holes, [filled_in]):
+            return _Part([Recognised(filled_in, 0.0)], holes, round_error(Triangles.of(whole)))
     return _Part([Recognised(facets_of(Triangles.of(part), coarse=coarse), 0.0)], [], round_error(Triangles.of(part)))
 
 

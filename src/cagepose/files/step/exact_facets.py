@@ -35,7 +35,7 @@ def facets_on_surfaces(solid: dict[str, Any], name: str) -> OnSurfaces:
         Of the shape.
     """
     vertices, triangles = np.array(solid["vertices"]), np.array(solid["faces"])
-    surfaces = [Surface(kind, tuple(point), tuple(axis), *numbers) for kind, point, axis, *numbers in solid["known"]]
+    surfaces = [Surface(kind, tuple(point), tuple(axis), *sizes) for kind, point, axis, *sizes in solid["known"]]
     size = float(np.ptp(vertices, axis=0).max())
     flat = max(FLAT * size, SLACK * solid["off_surfaces"])
     shape = Facets(vertices, triangles, flat, None, name, surfaces, solid["on"])

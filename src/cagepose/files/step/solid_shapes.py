@@ -10,7 +10,7 @@ from cagepose.errors import SceneError
 from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.manifolds import Triangles
 from cagepose.files.meshes.mended import mended
-from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
+from cagepose.files.meshes.mesh_shapes import MeshShapes, known_shapes, mesh_shapes
 from cagepose.files.meshes.surface_distance import farthest_from
 from cagepose.files.step.exact_facets import facets_on_surfaces
 from cagepose.files.step.tolerances import SAME_VOLUME
@@ -23,6 +23,8 @@ from cagepose.model.wording import counted
 
 Data = dict[str, Any]
 
+MOST_RECOGNISED = 4000
+"""Triangles of a solid that is asked whether it is one of our shapes, or a few: of more, that takes seconds."""
 LOSS_OF_ROUNDINGS = 0.05
 """Fraction of the size. Hollow roundings whose loss is more are kept, as many flat faces."""
 
@@ -58,12 +60,13 @@ def solid_shapes(name: str, solid: Data) -> MeshShapes:
     lost = 0.0
     if "sharp" in solid:
         solid, mesh, lost = _sharp(solid, mesh, name, notes)
-    found = mesh_shapes(mesh, name, "mm")
-    if _is_exact(found, solid):
-        return MeshShapes(found.shapes, lost, tuple(notes))
+    known = known_shapes(mesh, name, "mm") if len(mesh.faces) <= MOST_RECOGNISED else None
+    if known is not None and _is_exact(known, solid):
+        return MeshShapes(known.shapes, lost, tuple(notes))
     if moved == 0.0:
         exact = facets_on_surfaces(solid, name)
         return MeshShapes((exact.shape,), max(lost, exact.error), (*notes, *exact.notes))
+    found = known or mesh_shapes(mesh, name, "mm")
     notes += found.notes
     if solid["off"] > found.error:
         notes.append(f"{name!r} has flat sides where it is round there, up to {solid['off']:.2g} mm off")

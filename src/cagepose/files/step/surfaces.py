@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -57,8 +58,8 @@ def _facing_out(surface: Surface, corners: FloatArray) -> Surface:
         return surface
     if surface.kind == PLANE:
         x, y, z = (-np.array(surface.axis)).tolist()
-        return surface._replace(axis=(x, y, z))
-    return surface._replace(radius_m=-surface.radius_m)
+        return replace(surface, axis=(x, y, z))
+    return replace(surface, radius_m=-surface.radius_m)
 
 
 def one_of_each(surfaces: list[Surface | None], size: float) -> tuple[list[Surface], list[int]]:

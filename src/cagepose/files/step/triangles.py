@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import astuple
 from typing import Any
 
 import numpy as np
@@ -69,7 +70,7 @@ def triangles_of(solid: Any, *, within: bool = False) -> Data:
         "vertices": vertices.tolist(),
         "faces": joined[distinct].tolist(),
         "off": max(_off(face) for face in faces),
-        "known": known,
+        "known": [astuple(surface) for surface in known],
         "on": on.tolist(),
         "off_surfaces": farthest_off(known, on, vertices[joined[distinct]]),
         "off_others": max((_off(face) for face, found in zip(faces, which, strict=True) if found < 0), default=0.0),
@@ -100,7 +101,9 @@ def _shared(faces: list[Any], n_points: list[int], places: FloatArray) -> list[t
                 ways = nodes, nodes[::-1]
                 off = [np.abs(places[others] - places[way]).max() for way in ways]
                 if min(off) <= FARTHEST_APART * float(np.ptp(places, axis=0).max()):
-                    found += [pair for pair in zip(others, ways[int(np.argmin(off))], strict=True) if pair[0] != pair[1]]
+                    found += [
+                        pair for pair in zip(others, ways[int(np.argmin(off))], strict=True) if pair[0] != pair[1]
+                    ]
     return found
 
 
