@@ -93,7 +93,8 @@ def surface_of(shape: Facets) -> ExactSurface:
     one, stays facets.
     """
     surfaces = [surface.changed(1.0, shape.pose_body_shape) for surface in shape.surfaces]
-    vertices_m, triangles, on, flat_m = shape.nodes_body(), shape.triangles, shape.on, shape.flat_m
+    first = np.array([*(surfaces.index(surface) for surface in surfaces), -1])
+    vertices_m, triangles, on, flat_m = shape.nodes_body(), shape.triangles, first[shape.on], shape.flat_m
     twins = twins_of(vertices_m, triangles)
     kept = np.array([not (surface.kind == SPHERE and surface.radius_m < 0.0) for surface in surfaces])
     while True:
