@@ -19,8 +19,8 @@ CHORDS_OF_CIRCLE = 64
 """Chords of a full circle at least."""
 CHORD_OF_SIZE = 1e-2
 """How far triangles may be from the surface, where that is less than `CHORDS_OF_CIRCLE` gives."""
-NO_NAME = "Open CASCADE STEP translator"
-"""What names begin with that Open CASCADE gives where there is none."""
+NO_NAMES = ("Open CASCADE STEP translator", "SOLID", "COMPOUND")
+"""What Open CASCADE writes where there is no name; numbers may stand behind the first."""
 UNNAMED = "solid"
 """What a solid without a name is called, and its number."""
 MOST_FILLETS = 300
@@ -85,7 +85,7 @@ def _leaves(label: Any, place: Any, name: str) -> Iterator[tuple[str, Any]]:
 
     found = TDataStd_Name()
     own = found.Get().ToExtString() if label.FindAttribute(TDataStd_Name.GetID_s(), found) else ""
-    own = "" if own.startswith(NO_NAME) else own
+    own = "" if own.startswith(NO_NAMES[0]) or own in NO_NAMES else own
     if XCAFDoc_ShapeTool.IsReference_s(label):
         place = place * XCAFDoc_ShapeTool.GetLocation_s(label)
         original = TDF_Label()
