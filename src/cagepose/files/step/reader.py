@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator
 from typing import Any
@@ -19,8 +20,8 @@ CHORDS_OF_CIRCLE = 64
 """Chords of a full circle at least."""
 CHORD_OF_SIZE = 1e-2
 """How far triangles may be from the surface, where that is less than `CHORDS_OF_CIRCLE` gives."""
-NO_NAMES = ("Open CASCADE STEP translator", "SOLID", "COMPOUND")
-"""What Open CASCADE writes where there is no name; numbers may stand behind the first."""
+NO_NAME = re.compile(r"Open CASCADE STEP translator.*|SOLID|COMPOUND|=>\[[\d:]+\]|")
+"""What Open CASCADE writes, or says, where there is no name."""
 UNNAMED = "solid"
 """What a solid without a name is called, and its number."""
 MOST_FILLETS = 300
@@ -85,7 +86,7 @@ def _leaves(label: Any, place: Any, name: str) -> Iterator[tuple[str, Any]]:
 
     found = TDataStd_Name()
     own = found.Get().ToExtString() if label.FindAttribute(TDataStd_Name.GetID_s(), found) else ""
-    own = "" if own.startswith(NO_NAMES[0]) or own in NO_NAMES else own
+    own = name if NO_NAME.fullmatch(own) else own
     if XCAFDoc_ShapeTool.IsReference_s(label):
         place = place * XCAFDoc_ShapeTool.GetLocation_s(label)
         original = TDF_Label()
@@ -97,7 +98,7 @@ def _leaves(label: Any, place: Any, name: str) -> Iterator[tuple[str, Any]]:
         for index in range(1, parts.Length() + 1):
             yield from _leaves(parts.Value(index), place, own)
     else:
-        yield own or name, XCAFDoc_ShapeTool.GetShape_s(label).Moved(place)
+        yield own, XCAFDoc_ShapeTool.GetShape_s(label).Moved(place)
 
 
 def _solid(solid: Any, most_fillets: int) -> Data:
