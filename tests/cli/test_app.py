@@ -14,7 +14,7 @@ import pytest
 import cagepose.runs.solve
 from cagepose.cli.app import COMMANDS, overview
 from cagepose.exchange.export import Format
-from cagepose.exchange.solids_document import SOLIDS
+from cagepose.exchange.source_solids import SOLIDS
 from cagepose.files.schema import scene_json_schema
 
 Command = Callable[..., Any]

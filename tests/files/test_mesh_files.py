@@ -235,7 +235,7 @@ BYTES = {
         "is 1e+08 times its size away from the origin; move both bodies there",
     ),
     "no-corner.glb": (glb_of_one(b"\x07\0\0\0"), "has a triangle whose corner is not there; export it again"),
-    "part.step": (b"ISO-10303-21;", "has the suffix '.step'; give a file of one of: .stl, .obj, .ply, .glb"),
+    "part.3mf": (b"PK", "has the suffix '.3mf'; give a file of one of: .step, .stp, .stl, .obj, .ply, .glb"),
 }
 ASK_FOR_MUCH = ("eight-gigabytes.glb", "text.ply", "garbage.glb")
 """Of which memory and processor time must be limited."""

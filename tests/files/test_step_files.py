@@ -112,6 +112,17 @@ def test_solids_are_one_body_or_one_of_them_is_chosen(scene, tmp_path):
 
 
 @pytest.mark.usefixtures("in_this_process")
+def test_what_a_program_writes_where_there_is_no_name_is_none(tmp_path):
+    """Open CASCADE calls the one solid of what it cut SOLID, within the part that has the name."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+
+    written(tmp_path / "ring.step", [("ring", BRepAlgoAPI_Cut(block(), pin(34.0)).Shape())])
+    written(tmp_path / "none.step", [("Open CASCADE STEP translator 8.0 1", block())])
+    names = [list(step_file.named_solids(step_file.read_step(tmp_path / f"{name}.step"))) for name in ("ring", "none")]
+    assert names == [["ring"], ["solid 1"]]
+
+
+@pytest.mark.usefixtures("in_this_process")
 def test_a_unit_beside_step_and_a_solid_beside_a_mesh_are_errors(scene, tmp_path):
     written(tmp_path / "pin.step", [("pin", pin(0.0))])
     with pytest.raises(SceneFileError, match=r"pin\.step says its unit itself, as STEP files do; remove the key unit"):

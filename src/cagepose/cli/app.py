@@ -75,7 +75,7 @@ COMMANDS = {
     ),
     "import": (
         "cagepose.cli.import_command:import_command",
-        "Write the scene that an MJCF, URDF, STEP, STL, OBJ, PLY or GLB file describes.",
+        "Write the scene that MJCF, URDF, STEP, STL, OBJ, PLY or GLB files describe.",
     ),
     "crosscheck": (
         "cagepose.cli.crosscheck_command:crosscheck_command",

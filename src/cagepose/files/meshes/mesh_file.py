@@ -102,7 +102,7 @@ def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
     """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise refused(f"has the suffix {path.suffix!r}; give a file of one of: {', '.join(SUFFIXES)}")
+        raise refused(f"has the suffix {path.suffix!r}; give a file of one of: .step, .stp, {', '.join(SUFFIXES)}")
     if not path.is_file():
         raise refused("is no file; check the name and the folder")
     if path.stat().st_size > MAX_MESH_BYTES:

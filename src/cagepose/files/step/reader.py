@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator
 from typing import Any
@@ -16,8 +17,8 @@ from cagepose.model.shapes import Convex
 
 Data = dict[str, Any]
 
-NO_NAME = "Open CASCADE STEP translator"
-"""What names begin with that Open CASCADE gives where there is none."""
+NO_NAME = re.compile(r"Open CASCADE STEP translator.*|SOLID|COMPOUND|=>\[[\d:]+\]|")
+"""What Open CASCADE writes, or says, where there is no name."""
 UNNAMED = "solid"
 """What a solid without a name is called, and its number."""
 MOST_FILLETS = 300
@@ -82,7 +83,7 @@ def _leaves(label: Any, place: Any, name: str) -> Iterator[tuple[str, Any]]:
 
     found = TDataStd_Name()
     own = found.Get().ToExtString() if label.FindAttribute(TDataStd_Name.GetID_s(), found) else ""
-    own = "" if own.startswith(NO_NAME) else own
+    own = name if NO_NAME.fullmatch(own) else own
     if XCAFDoc_ShapeTool.IsReference_s(label):
         place = place * XCAFDoc_ShapeTool.GetLocation_s(label)
         original = TDF_Label()
@@ -94,7 +95,7 @@ def _leaves(label: Any, place: Any, name: str) -> Iterator[tuple[str, Any]]:
         for index in range(1, parts.Length() + 1):
             yield from _leaves(parts.Value(index), place, own)
     else:
-        yield own or name, XCAFDoc_ShapeTool.GetShape_s(label).Moved(place)
+        yield own, XCAFDoc_ShapeTool.GetShape_s(label).Moved(place)
 
 
 def _solid(solid: Any, most_fillets: int) -> Data:
