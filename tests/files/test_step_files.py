@@ -137,7 +137,7 @@ def test_a_unit_beside_step_and_a_solid_beside_a_mesh_are_errors(scene, tmp_path
 def test_shapes_are_kept_for_as_long_as_the_file_stays_the_same(scene, anew, tmp_path, monkeypatch):
     asked: list[Path] = []
     read = step_file.read_step
-    monkeypatch.setattr(step_file, "read_step", lambda path: asked.append(path) or read(path))
+    monkeypatch.setattr(step_file, "read_step", lambda path, fillets: asked.append(path) or read(path, fillets=fillets))
     written(tmp_path / "two.step", [("pin", pin(0.0)), ("block", block())])
     first = [scene(f"file: two.step, solid: {solid}").object.parts[0] for solid in ("pin", "block")]
     assert len(asked) == 1  # the file is read once for both

@@ -115,6 +115,11 @@ class Facets(Shape):
     def _digest(self) -> bytes:
         return sha256(self.vertices_m.tobytes() + self.triangles.tobytes()).digest()
 
+    @property
+    def is_round(self) -> bool:
+        """Whether some triangles stand for what is round."""
+        return any(surface.is_round for surface in self.surfaces)
+
     def nodes_body(self) -> FloatArray:
         return self.pose_body_shape.transform(self.vertices_m)
 

@@ -6,6 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from cagepose.model.boundary.features import is_flat_sided
+from cagepose.model.boundary.joined_surfaces import surface_groups
+from cagepose.model.facets import Facets
 from cagepose.model.geometry import body_limits, object_size
 from cagepose.model.scene import Scene, millimetres
 from cagepose.model.shapes import Capsule, Cylinder, Sphere
@@ -35,6 +38,7 @@ def remarks(scene: Scene) -> Iterator[str]:
     yield from _center(scene)
     yield from _gravity(scene)
     yield from _fits(scene)
+    yield from _flattened(scene)
     is_large = scene.size_m > LARGEST_M and object_size(scene.object) > SMALL_ENOUGH_M
     if is_large or scene.size_m < SMALLEST_M:
         yield (
@@ -103,6 +107,19 @@ def _gravity(scene: Scene) -> Iterator[str]:
             f"{few(names)}: a gravity of {found}; it is given in m/s², whatever the unit of length"
             f" ({EARTH_M_S2} on Earth)"
         )
+
+
+def _flattened(scene: Scene) -> Iterator[str]:
+    """Facets that stand for what is round, and meet other parts of their body: they are joined as flat facets."""
+    for parts in (scene.object.parts, scene.cage.standing.shapes, *(body.own.shapes for body in scene.cage.bodies)):
+        flat_sided = {k: part for k, part in enumerate(parts) if is_flat_sided(part)}
+        for group in surface_groups(flat_sided, scene.touch_m):
+            names = [str(part.name) for k in sorted(group) if isinstance(part := parts[k], Facets) and part.is_round]
+            if len(group) > 1 and names:
+                yield (
+                    f"{few(names)}: joined with other parts of the body as flat facets, not as the round surfaces that"
+                    " they stand for; draw what is one as one solid"
+                )
 
 
 def _fits(scene: Scene) -> Iterator[str]:

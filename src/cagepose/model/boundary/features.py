@@ -89,6 +89,11 @@ def _with_holes(block: Block, parts: Sequence[Shape | FloatArray], holes: Sequen
     return block
 
 
+def is_flat_sided(part: Shape) -> bool:
+    """Whether a part is joined with others of its body where they meet: a box, a sharp hull, or facets."""
+    return isinstance(part, Facets) or _piece_of(part, 0) is not None
+
+
 def _piece_of(part: Shape | FloatArray, number: int) -> ConvexPiece | None:
     """Return a sharp polyhedron as a piece of a union; None: the part is none."""
     if isinstance(part, Box):
