@@ -50,6 +50,23 @@ def prism(profile: list[Corner], length: float, name: str = "prism") -> Facets:
     return Facets(vertices, np.array(triangles), None, None, name, surfaces, on)
 
 
+def cradle(wide: float = 0.02, deep: float = 0.01, radius: float = 0.005) -> Facets:
+    """A block with a half-round groove of the given radius along the middle of its top, which is at z = 0."""
+    return prism(
+        [
+            Corner((-wide, -deep)),
+            Corner((wide, -deep)),
+            Corner((wide, 0.0)),
+            Corner((radius, 0.0), (0.0, 0.0)),
+            Corner((0.0, -radius), (0.0, 0.0)),
+            Corner((-radius, 0.0)),
+            Corner((-wide, 0.0)),
+        ],
+        0.04,
+        "cradle",
+    )
+
+
 def _side(corner: Corner, start: np.ndarray, end: np.ndarray) -> Surface:
     if corner.center is None:
         x, z = (end - start) / np.linalg.norm(end - start)

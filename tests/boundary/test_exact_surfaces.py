@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from boundary.prisms import Corner, prism
+from boundary.prisms import Corner, cradle, prism
 from cagepose import Box, Cage, Cylinder, Facets, Load, Object, Pose, Scene, load_scene, run, save_scene
 from cagepose.files.record import from_record, record_of
 from cagepose.kernels.boundary.features import CIRCLE, FACE, LINE, SEGMENT, VERTEX
@@ -18,23 +18,6 @@ TOUCH_M = 1e-11
 ALONG_Y = Pose((0, 0, 0), euler_zyx=(0.0, 0.0, math.pi / 2.0))
 FLOOR = Box((1.0, 1.0, 0.1), Pose((0, 0, -0.05)), "floor")
 WEIGHT = [Load("weight", gravity=(0.0, 0.0, -9.81))]
-
-
-def cradle(wide: float = 0.02, deep: float = 0.01, radius: float = 0.005):
-    """A block with a half-round groove of the given radius along the middle of its top, which is at z = 0."""
-    return prism(
-        [
-            Corner((-wide, -deep)),
-            Corner((wide, -deep)),
-            Corner((wide, 0.0)),
-            Corner((radius, 0.0), (0.0, 0.0)),
-            Corner((0.0, -radius), (0.0, 0.0)),
-            Corner((-radius, 0.0)),
-            Corner((-wide, 0.0)),
-        ],
-        0.04,
-        "cradle",
-    )
 
 
 def rounded_bar(wide: float, high: float, radius: float, length: float):

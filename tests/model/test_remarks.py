@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import cagepose
+from boundary.prisms import cradle
 from cagepose import Box, Cage, Cylinder, Force, Hole, Load, Object, Pose, Scene
 from cagepose.model.remarks import remarks
 
@@ -106,3 +107,13 @@ def test_a_weight_that_a_later_phase_drops_is_told() -> None:
     push = Load("push", force=Force((0, 0, -1), (0, 0, 0)))
     (told,) = [warning for warning in cagepose.run(scene(loads=[DOWN, push])).warnings if "weight" in warning]
     assert told == "push: the weight of the phase before no longer acts (give gravity in this phase to keep it)"
+
+
+def test_round_surfaces_that_joined_facets_lose_are_named() -> None:
+    groove = cradle()
+    beside = Box((0.01, 0.04, 0.01), Pose((0.024, 0.0, -0.005)), "foot")
+    held = Object(shapes=[Box((0.002, 0.002, 0.002), name="cube")], pose=Pose((0.0, 0.0, 0.02)))
+    for shapes, n_said in (([groove], 0), ([groove, beside], 1), ([groove, beside.moved(Pose((0.06, 0, 0)))], 0)):
+        scene = Scene(held, Cage(shapes=shapes), [Load("weight", gravity=(0.0, 0.0, -9.81))])
+        said = [remark for remark in remarks(scene) if remark.startswith("cradle: joined with other parts")]
+        assert len(said) == n_said
