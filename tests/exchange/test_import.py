@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import subprocess
@@ -29,7 +30,7 @@ from cagepose import (
     run,
 )
 from cagepose.cli.app import main
-from cagepose.exchange import compile_model, imported, model_document, model_text
+from cagepose.exchange import compile_model, imported, model_text
 from cagepose.exchange.compile_model import compiled_here
 from cagepose.exchange.export import exported
 from cagepose.exchange.model_friction import scene_friction
@@ -58,7 +59,11 @@ EXACT = [name for name, path in FILES.items() if is_primitive(load_scene(path))]
 @pytest.fixture
 def here(monkeypatch):
     """Compile in this process, which spares a start of Python."""
-    monkeypatch.setattr(model_document, "compiled", compiled_here)
+
+    def ask(_module, given, _seconds, _library):
+        return json.dumps(compiled_here(json.loads(given))).encode()
+
+    monkeypatch.setattr(compile_model, "ask", ask)
 
 
 def there_and_back(scene: Scene, to: str, folder: Path):

@@ -30,6 +30,21 @@ def import_command(
             help="A body that holds it, with all that hangs on it; may be given several times. Left out: all others.",
         ),
     ] = (),
+    root: Annotated[
+        FileName | None,
+        Parameter(
+            help="The folder under which a robot model's meshes and includes lie, packages too; left out: the model's."
+        ),
+    ] = None,
+    keyframe: Annotated[
+        str | None, Parameter(help="The keyframe of a robot model at which its bodies are taken.")
+    ] = None,
+    qpos: Annotated[
+        str | None,
+        Parameter(
+            help="Where its joints are: all coordinates, or JOINT=NUMBER for some, such as 'left=0.02 right=0.02'."
+        ),
+    ] = None,
 ) -> int:
     """Read a model, write it as a scene, and say what is not in it as it was."""
     from cagepose.errors import printable
@@ -38,7 +53,7 @@ def import_command(
 
     try:
         check_can_save_scene(out)
-        found = imported(file, object, cage)
+        found = imported(file, object, cage, root=root, keyframe=keyframe, qpos=qpos)
         save_scene(found.scene, out)
     except OSError as error:
         sys.stderr.write(refusal(f"--out {out}", error) + "\n")

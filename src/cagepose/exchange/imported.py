@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cagepose.errors import FileProblem, SceneFileError
-from cagepose.exchange.model_document import model_document
+from cagepose.exchange.model_document import Chosen, model_document
 from cagepose.exchange.solids_document import SOLIDS, solids_document
 from cagepose.files.scene_file import SceneText
 from cagepose.files.yaml_source import YamlSource
@@ -22,7 +22,15 @@ class Import(NamedTuple):
     notes: tuple[str, ...]
 
 
-def imported(source: str, object_name: str | None = None, cage_names: Sequence[str] = ()) -> Import:
+def imported(
+    source: str,
+    object_name: str | None = None,
+    cage_names: Sequence[str] = (),
+    *,
+    root: str | None = None,
+    keyframe: str | None = None,
+    qpos: str | None = None,
+) -> Import:
     """Read a model; what takes seconds is told, see `cagepose.files.progress`.
 
     Parameters
@@ -34,6 +42,11 @@ def imported(source: str, object_name: str | None = None, cage_names: Sequence[s
         names, or what they begin with before a "/".
     cage_names
         Bodies that hold it, each with all that hangs on it; none: all others.
+    root
+        Of a robot model: the folder under which its meshes and what it includes lie; None: its own.
+    keyframe, qpos
+        Of a robot model: the pose at which bodies are taken, a keyframe's name, and coordinates of joints, all or
+        JOINT=NUMBER for some.
 
     Raises
     ------
@@ -47,7 +60,10 @@ def imported(source: str, object_name: str | None = None, cage_names: Sequence[s
         message = "has a name, or is in a folder, whose letters are no UTF-8; rename it"
         raise SceneFileError([FileProblem((), message, source)])
     try:
-        document, notes = (solids_document if is_solids else model_document)(source, object_name, cage_names)
+        if is_solids:
+            document, notes = solids_document(source, object_name, cage_names)
+        else:
+            document, notes = model_document(source, Chosen(object_name, cage_names, root, keyframe, qpos))
     except OSError as error:
         message = f"cannot be read ({error.strerror or error}); check the names of its files and their permissions"
         raise SceneFileError([FileProblem((), message, source)]) from None

@@ -76,6 +76,18 @@ class ModelBodies:
                 found.add(number)
         return found
 
+    def mover(self, body: int, of_cage: set[int]) -> int | None:
+        """Return the body of the cage whose joint moves a body, itself or the next above; None: it stands still."""
+        while body in of_cage and body != WORLD_BODY:
+            if self._bodies[body]["is_jointed"]:
+                return body
+            body = self._bodies[body]["parent"]
+        return None
+
+    def name(self, body: int) -> str:
+        """Return a body's name; of one without, "body 3"."""
+        return self._names[body]
+
     def jointed(self, bodies: Iterable[int]) -> list[str]:
         """Return the names of those that a joint moves."""
         return [self._names[number] for number in sorted(bodies) if self._bodies[number]["is_jointed"]]

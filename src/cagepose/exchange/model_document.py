@@ -1,48 +1,73 @@
-"""Bodies of a compiled model as the data of a scene file: `model_document`."""
+"""Bodies of a model as the data of a scene file: `model_document`."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import Any, NamedTuple
 
 from cagepose.errors import FileProblem, SceneFileError
 from cagepose.exchange.beside import read_beside, spoilt
 from cagepose.exchange.compile_model import compiled
 from cagepose.exchange.extra import mujoco
 from cagepose.exchange.model_bodies import WORLD_BODY, ModelBodies
+from cagepose.exchange.model_contacts import ModelContacts
 from cagepose.exchange.model_friction import scene_friction
+from cagepose.exchange.model_names import name_them
+from cagepose.exchange.model_overlaps import freed
+from cagepose.exchange.model_shapes import GeomShapes, reach_m
 from cagepose.exchange.model_text import ModelText, read_model_text
 from cagepose.exchange.solids_document import METRES, SOLIDS, kept_friction
-from cagepose.exchange.tolerances import VOLUME_NOT_CONVEX
-from cagepose.files.meshes.manifolds import Triangles, manifold3d
-from cagepose.files.meshes.pieces import MOST_CORNERS
-from cagepose.files.triples import text_of
 from cagepose.model.pose import Pose
-from cagepose.model.shape_moments import shape_moments
-from cagepose.model.shapes import Convex
 from cagepose.model.wording import few
 
 Data = dict[str, Any]
 """What is known of a geom, or of a part of a scene file."""
 
-PLANE_OF_REACH = 20.0
-"""Width of the box that stands for a plane, in distances of the object's farthest point: no plane of MuJoCo ends."""
+KEPT = ("method", "metric", "tolerances")
+SHOWN = 12
+"""So many names in a note."""
 
 
-def model_document(source: str, object_name: str | None, cage_names: Sequence[str]) -> tuple[Data, list[str]]:
-    """Return the data of a scene of bodies, and what is not in it as in the model."""
+class Chosen(NamedTuple):
+    """What of a model is asked for.
+
+    Attributes
+    ----------
+    object_name, cage_names
+        The body that is held, None: the only one that moves freely; and what holds it, none: all others.
+    root
+        The folder under which the model's files lie; None: its own.
+    keyframe, qpos
+        Where its joints are, see `cagepose.exchange.model_pose.set_pose`.
+    """
+
+    object_name: str | None = None
+    cage_names: Sequence[str] = ()
+    root: str | None = None
+    keyframe: str | None = None
+    qpos: str | None = None
+
+
+def model_document(source: str, chosen: Chosen) -> tuple[Data, list[str]]:
+    """Return the data of a scene of bodies, and what is not in it as in the model.
+
+    Raises
+    ------
+    SceneFileError
+        A model that cannot be used, or bodies that it does not have.
+    MissingExtraError
+        There is no MuJoCo.
+    """
     mujoco()
-    text = read_model_text(source, SOLIDS)
+    text = read_model_text(source, SOLIDS, chosen.root)
     kept, notes = _beside(text), list[str]()
     beside = read_beside(kept) if kept else {}
     if beside is None:
         notes.append(spoilt(Path(source).name))
-    reader = _Reader(source, ModelBodies(source, compiled(source)), beside or {}, notes, is_urdf=text.is_urdf)
-    return reader.document(object_name, cage_names), notes
+    found = compiled(text, source, chosen.keyframe, chosen.qpos)
+    reader = _Reader(source, found, beside or {}, notes, is_urdf=text.is_urdf)
+    return reader.document(chosen.object_name, chosen.cage_names), notes
 
 
 def _beside(text: ModelText) -> str:
@@ -54,8 +79,12 @@ def _beside(text: ModelText) -> str:
 
 
 class _Reader:
-    def __init__(self, source: str, bodies: ModelBodies, beside: Data, notes: list[str], *, is_urdf: bool) -> None:
-        self.source, self.bodies, self.beside, self.notes, self.is_urdf = source, bodies, beside, notes, is_urdf
+    def __init__(self, source: str, compiled: Data, beside: Data, notes: list[str], *, is_urdf: bool) -> None:
+        self.source, self.beside, self.notes, self.is_urdf = source, beside, notes, is_urdf
+        self.bodies, self.contacts = ModelBodies(source, compiled), ModelContacts(compiled)
+        self.shapes = GeomShapes(notes)
+        self.hulls: list[str] = compiled["hulls"]
+        self.balanced: list[str] = compiled["inertia"]
 
     def document(self, object_name: str | None, cage_names: Sequence[str]) -> Data:
         """Return the scene file's data."""
@@ -63,87 +92,106 @@ class _Reader:
         held = bodies.free() if object_name is None else bodies.named(object_name)
         of_object = bodies.below([held])
         of_cage = bodies.below([bodies.named(name) for name in cage_names] or [WORLD_BODY]) - of_object
+        self.note_bodies(of_object, of_cage, held)
+        parts, walls = self.touching(of_object, of_cage)
+        left_out = list[str](beside.get("left_out", ()))
+        parts, walls = (self.shapes.known(geoms, left_out) for geoms in (parts, walls))
+        found: Data = {"name": beside.get("name") or Path(self.source).stem, "units": {"length": "m"}}
+        of_part = [self.shapes.shape(geom, self.place(geom, held), parts) for geom in parts if geom["kind"] != "plane"]
+        reach = max(map(reach_m, of_part), default=0.0)
+        found["object"] = {"shapes": of_part, **self.inertial(of_object, held), "pose": METRES.pose(bodies.pose(held))}
+        found["cage"] = self.cage(walls, of_cage, held, reach)
+        for body, what in ((found["object"], "the object"), (found["cage"], "the cage")):
+            if not any(body.get(key) for key in ("shapes", "points", "bodies")):
+                message = f"has nothing that touches in what is {what}; choose other bodies with --object and --cage"
+                raise SceneFileError([FileProblem((), message, self.source)])
+        found["loads"] = self.loads()
+        found, inside, notes = freed(found, reach, self.source)
+        self.notes += notes
+        found |= self.friction(parts, [geom for geom in walls if geom["label"] not in inside])
+        if left_out + inside:
+            found["left_out"] = left_out + inside
+        return found | {key: beside[key] for key in KEPT if key in beside}
+
+    def note_bodies(self, of_object: set[int], of_cage: set[int], held: int) -> None:
+        bodies = self.bodies
         for what, names in (
-            ("joints stay where the model has them, of", bodies.jointed((of_object | of_cage) - {held})),
+            ("joints stay where the model has them, of", bodies.jointed(of_object - {held})),
+            ("bodies of the cage that no phase drives stand still:", bodies.jointed(of_cage)),
             ("bodies left out:", bodies.others(of_object | of_cage)),
         ):
             if names:
-                self.notes.append(f"{what} {few(names, 12)}")
-        parts, walls = self.geoms(of_object), self.geoms(of_cage)
-        name_them([*parts, *walls])
-        with_geoms = {geom["body"] for geom in walls}
-        frame = with_geoms.pop() if len(with_geoms) == 1 else WORLD_BODY
-        shapes = [self.shape(geom, held, held, 0.0) for geom in parts]
-        reach_m = max((_reach_m(shape) for shape in shapes if shape), default=0.0)
-        points = {
-            geom["label"]: self.place(geom, frame).position_m.tolist()
-            for geom in walls
-            if geom["kind"] == "sphere" and geom["label"] in beside.get("points", ())
-        }
-        others = [self.shape(geom, frame, held, reach_m) for geom in walls if geom["label"] not in points]
-        found: Data = {"name": beside.get("name") or Path(self.source).stem, "units": {"length": "m"}}
-        found["object"] = {"shapes": [shape for shape in shapes if shape], **self.inertial(of_object, held)}
-        found["object"]["pose"] = METRES.pose(bodies.pose(held))
-        found["cage"] = {"points": points, "shapes": [shape for shape in others if shape]}
-        found["cage"] = {key: value for key, value in found["cage"].items() if value}
-        found["cage"]["pose"] = METRES.pose(bodies.pose(frame))
-        for body, what in ((found["object"], "the object"), (found["cage"], "the cage")):
-            if not body.get("shapes") and not body.get("points"):
-                message = f"has nothing that touches in what is {what}; choose other bodies with --object and --cage"
-                raise SceneFileError([FileProblem((), message, self.source)])
-        found |= {"loads": self.loads(), **self.friction(parts, walls)}
-        return found | {key: beside[key] for key in ("method", "metric", "tolerances") if key in beside}
+                self.notes.append(f"{what} {few(names, SHOWN)}")
+        if self.balanced:
+            self.notes.append(
+                "a body's moments of inertia are impossible there (one is greater than the two others together): here,"
+                " all three are their mean"
+            )
 
-    def geoms(self, of_bodies: set[int]) -> list[Data]:
-        """Return the geoms of bodies that touch anything."""
-        found = [geom for geom in self.bodies.geoms if geom["body"] in of_bodies]
-        unseen = [geom["name"] for geom in found if not geom["touches"] and geom["name"]]
-        if unseen:
-            self.notes.append(f"left out, as they touch nothing: {few(unseen)}")
-        return [geom for geom in found if geom["touches"]]
+    def touching(self, of_object: set[int], of_cage: set[int]) -> tuple[list[Data], list[Data]]:
+        """Return the geoms of the object and of the cage that can touch one of the other, with labels."""
+        geoms = self.bodies.geoms
+        parts, walls = ([geom for geom in geoms if geom["body"] in those] for those in (of_object, of_cage))
+        pairs = self.contacts.touching(parts, walls)
+        seen = {number for pair in pairs for number in pair}
+        name_them([geom for geom in (*parts, *walls) if geom["number"] in seen], self.bodies, of_cage)
+        for found, other in ((parts, "the cage"), (walls, "the object")):
+            unseen = [geom["name"] for geom in found if geom["number"] not in seen and geom["name"]]
+            if unseen:
+                self.notes.append(f"left out, as in the model they do not touch {other}: {few(unseen)}")
+        parts, walls = ([geom for geom in found if geom["number"] in seen] for found in (parts, walls))
+        partly = [
+            wall["label"] for wall in walls if any((part["number"], wall["number"]) not in pairs for part in parts)
+        ]
+        if partly:
+            self.notes.append(f"in the model, {few(partly)} touch some parts of the object only: here, all")
+        return parts, walls
+
+    def cage(self, walls: Sequence[Data], of_cage: set[int], held: int, reach: float) -> Data:
+        """Return what stands still, and each body that a joint moves by its name."""
+        movers = {geom["number"]: self.bodies.mover(geom["body"], of_cage) for geom in walls}
+        standing = [geom for geom in walls if movers[geom["number"]] is None]
+        with_geoms = {geom["body"] for geom in standing}
+        frame = with_geoms.pop() if len(with_geoms) == 1 else WORLD_BODY
+        listed = self.beside.get("points", ())
+        points = [geom for geom in standing if geom["kind"] == "sphere" and geom["label"] in listed]
+        shapes = [geom for geom in standing if geom not in points]
+        found: Data = {
+            "points": {geom["label"]: self.place(geom, frame).position_m.tolist() for geom in points},
+            "shapes": [self.wall(geom, frame, held, reach, shapes) for geom in shapes],
+            "bodies": {},
+        }
+        for mover in dict.fromkeys(body for body in movers.values() if body is not None):
+            own = [geom for geom in walls if movers[geom["number"]] == mover]
+            found["bodies"][self.bodies.name(mover)] = {
+                "shapes": [self.wall(geom, mover, held, reach, own) for geom in own],
+                "pose": METRES.pose(self.bodies.in_frame(mover, Pose(), frame)),
+            }
+        found = {key: value for key, value in found.items() if value}
+        return found | {"pose": METRES.pose(self.bodies.pose(frame))}
+
+    def wall(self, geom: Data, frame: int, held: int, reach: float, beside: Sequence[Data]) -> Data:
+        place = self.place(geom, frame)
+        if geom["kind"] == "plane":
+            return self.shapes.plane(geom, place, self.bodies.in_frame(held, Pose(), frame).position_m, reach)
+        return self.shapes.shape(geom, place, beside)
 
     def place(self, geom: Data, frame: int) -> Pose:
         return self.bodies.in_frame(geom["body"], Pose(geom["position"], geom["quaternion"]), frame)
-
-    def shape(self, geom: Data, frame: int, held: int, reach_m: float) -> Data | None:
-        """Return a geom as a shape of a scene file in the frame of a body; None: it is left out."""
-        label, place, size = geom["label"], self.place(geom, frame), geom["size"]
-        if geom["kind"] == "box":
-            numbers: Data = {"box": {"size": [2.0 * half for half in size]}}
-        elif geom["kind"] == "sphere":
-            numbers = {"sphere": {"radius": size[0]}}
-        elif geom["kind"] in ("capsule", "cylinder"):
-            numbers = {geom["kind"]: {"radius": size[0], "length": 2.0 * size[1]}}
-        elif geom["kind"] == "plane":
-            width_m = PLANE_OF_REACH * reach_m
-            self.notes.append(f"{label!r} is a plane; here, a box {width_m:.3g} m wide under the object, its top there")
-            x, y, _ = place.inverse_transform(self.bodies.in_frame(held, Pose(), frame).position_m).tolist()
-            numbers, place = {"box": {"size": [width_m, width_m, reach_m]}}, place @ Pose((x, y, -reach_m / 2.0))
-        elif "vertices" in geom:
-            numbers = self.hull(geom, label)
-        else:
-            numbers = {}
-            self.notes.append(f"left out: {label!r}, as it is neither box, ball, capsule, cylinder, plane nor mesh")
-        return {"name": label, **numbers, **METRES.pose(place, turn=False)} if numbers else None
-
-    def hull(self, geom: Data, label: str) -> Data:
-        is_large = len(geom["vertices"]) > MOST_CORNERS
-        whole = manifold3d().Manifold.hull_points(np.array(geom["vertices"])) if is_large else None
-        full_m3 = shape_moments(Convex(geom["vertices"])).volume_m3 if whole is None else whole.volume()
-        volume_m3 = abs(geom["volume"])
-        if volume_m3 < (1.0 - VOLUME_NOT_CONVEX) * full_m3:
-            share = 1.0 - volume_m3 / full_m3
-            self.notes.append(f"the mesh {label!r} is not convex: here, its hull, {share:.1%} of which is too much")
-        if whole is None:
-            return {"convex": {"vertices": geom["vertices"]}}
-        mesh = Triangles.of(whole)
-        return {"facets": {"vertices": text_of(mesh.vertices.tolist()), "triangles": text_of(mesh.faces.tolist())}}
 
     def inertial(self, of_object: set[int], frame: int) -> Data:
         found = self.bodies.inertial(of_object, frame)
         if found is None:
             self.notes.append("the object has no mass there: here, uniform density")
             return {}
+        opened = [
+            geom["mesh"] for geom in self.bodies.geoms if geom["body"] in of_object and geom.get("mesh") in self.hulls
+        ]
+        if opened:
+            self.notes.append(
+                f"no volume is within the mesh of {few(dict.fromkeys(opened))}; where mass, centre of gravity and"
+                " inertia come from it, they are those of its hull"
+            )
         center = {"center_of_gravity": found.center_m.tolist()}
         if not self.beside.get("has_mass", True):
             return center
@@ -166,18 +214,3 @@ class _Reader:
         if uneven:
             self.notes.append(f"friction of {few(uneven)} differs from part to part of the object: here, the greatest")
         return {"friction": {"coefficient": plain, **({"of": of} if of else {})}} if plain or of else {}
-
-
-def name_them(geoms: Sequence[Data]) -> None:
-    """Give each geom its ``label``: its name, without that of its body before it unless two would be one then."""
-    counts = Counter(geom["name"].partition("/")[2] or geom["name"] for geom in geoms)
-    for number, geom in enumerate(geoms):
-        short = geom["name"].partition("/")[2] or geom["name"]
-        geom["label"] = (short if counts[short] == 1 else geom["name"]) or f"geom {number + 1}"
-
-
-def _reach_m(shape: Data) -> float:
-    """Return a bound on how far a shape is from its body's origin, metres."""
-    numbers = next(value for key, value in shape.items() if isinstance(value, dict))
-    spans = [float(np.abs(value).sum()) for value in numbers.values()]
-    return float(np.linalg.norm(shape["position"])) + sum(spans)
