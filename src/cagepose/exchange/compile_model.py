@@ -24,10 +24,16 @@ FLAT = "flat mesh"
 """What a geom is whose mesh has no volume."""
 FLAT_MARK = "\x1fflat"
 """At the end of the name of a geom whose mesh has no volume: such a character no name in XML can have."""
-NAMED_MESH = (re.compile(r"[Mm]esh '([^']*)'"), re.compile(r"mesh[\s\S]*Element name '([^']*)'"))
+NAMED_MESH = (re.compile(r"[Mm]esh '([^']*)'"), re.compile(r"(?:mesh|vertices)[\s\S]*Element name '([^']*)'"))
 """How MuJoCo says which mesh it refuses."""
+SAYS_FLAT = ("coplanar vertices", "at least 4 vertices")
+"""How it says that a mesh is flat."""
+IMPOSSIBLE_INERTIA = re.compile(r"(?:A \+ B >= C|positive eigenvalues)[\s\S]*Element name '([^']*)'")
+"""How it says whose moments of inertia no body can have."""
 MOST_REPAIRS = 100
 """A model is compiled so often at most, with something changed that was refused."""
+SMALL_M = 1e-3
+"""Radius of a ball that has the mass of a mesh without volume."""
 LEAST_MASS_KG = 1e-9
 """What a body weighs that has no mass, where MuJoCo wants one."""
 SAID = 300
@@ -101,9 +107,10 @@ def _repaired(mujoco: Any, spec: Any, repairs: dict[str, list[str]]) -> Any:
 
 def _change(mujoco: Any, spec: Any, said: str, repairs: dict[str, list[str]]) -> bool:
     """Change what MuJoCo complains of; whether that is known."""
-    if "A + B >= C" in said and not spec.compiler.balanceinertia:
-        spec.compiler.balanceinertia = True
-        repairs["inertia"].append("was impossible for some bodies")
+    if (found := IMPOSSIBLE_INERTIA.search(said)) and (body := spec.body(found[1])) is not None:
+        moments = np.array(body.fullinertia[:3] if np.isfinite(body.fullinertia[0]) else body.inertia)
+        body.fullinertia, body.inertia = np.full(6, np.nan), np.full(3, max(np.abs(moments).mean(), LEAST_MASS_KG))
+        repairs["inertia"].append(found[1])
         return True
     if "mass and inertia of moving bodies" in said and not spec.compiler.boundmass:
         spec.compiler.boundmass = spec.compiler.boundinertia = LEAST_MASS_KG
@@ -112,14 +119,15 @@ def _change(mujoco: Any, spec: Any, said: str, repairs: dict[str, list[str]]) ->
     mesh = None if named is None else spec.mesh(named)
     if named is None or mesh is None:
         return False
-    if "coplanar" not in said and _takes_volume(mujoco, mesh):
+    if not any(words in said for words in SAYS_FLAT) and _takes_volume(mujoco, mesh):
         mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
         repairs["hulls"].append(named)
         return True
     geoms = [geom for geom in spec.geoms if geom.meshname == named]
     for number, geom in enumerate(geoms):
         geom.name = f"{geom.name or f'{named} {number + 1}'}{FLAT_MARK}"
-        geom.meshname, geom.type, geom.size, geom.mass = "", mujoco.mjtGeom.mjGEOM_SPHERE, [1.0, 0.0, 0.0], 0.0
+        geom.meshname, geom.type, geom.size = "", mujoco.mjtGeom.mjGEOM_SPHERE, [SMALL_M, 0.0, 0.0]
+        geom.mass = geom.mass if np.isfinite(geom.mass) else 0.0
     spec.delete(mesh)
     return True
 
@@ -208,7 +216,11 @@ def _geom(model: Any, geom: int, kinds: dict[int, str]) -> dict[str, Any]:
         first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
         vertices = model.mesh_vert[first : first + count].astype(np.float64)
         faces = model.mesh_face[model.mesh_faceadr[mesh] :][: model.mesh_facenum[mesh]]
+        path = int(model.mesh_pathadr[mesh])
         found["mesh"] = model.mesh(mesh).name
+        found["file"] = None if path < 0 else model.paths[path:].partition(b"\0")[0].decode()
+        found["scale"] = model.mesh_scale[mesh].tolist()
+        found["mesh_position"], found["mesh_quaternion"] = model.mesh_pos[mesh].tolist(), model.mesh_quat[mesh].tolist()
         found["is_closed"] = _is_closed(model, model.mesh(mesh).name)
         found["vertices"] = vertices[_corners_of_hull(model, mesh, count)].tolist()
         a, b, c = np.moveaxis(vertices[faces], 1, 0)

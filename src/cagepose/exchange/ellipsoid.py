@@ -13,8 +13,8 @@ import numpy as np
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
 from cagepose.model.checks import FloatArray
 
-CHORDS, CHORDS_ASKED = 24, 256
-"""Of a full circle of a ball: for the corners, 146; and for the directions in which it is asked what they are off."""
+CHORDS = 24
+"""Of a full circle of a ball whose corners, 146, are those of the hull."""
 
 
 class RoundedHull(NamedTuple):
@@ -27,19 +27,20 @@ class RoundedHull(NamedTuple):
 
 def rounded_hull(semi_axes_m: FloatArray) -> RoundedHull:
     """Return a hull within an ellipsoid, (3,), that touches it at the ends of its axes."""
-    places = semi_axes_m * _directions(CHORDS)
-    normals = _directions(CHORDS) / semi_axes_m
-    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    ball = Triangles.of(manifold3d().Manifold.sphere(1.0, CHORDS)).vertices
+    directions = _unit(ball)  # those along the axes among them
+    places, normals = semi_axes_m * directions, _unit(directions / semi_axes_m)
     radius_m = float(semi_axes_m.min() ** 2 / semi_axes_m.max())
     core = places - radius_m * normals
-    asked = _directions(CHORDS_ASKED)
-    reach = np.linalg.norm(asked * semi_axes_m, axis=1)
-    off_m = float((reach - (asked @ core.T).max(axis=1) - radius_m).max())
+    size = float(np.abs(core).max())
+    hull = Triangles.of(manifold3d().Manifold.hull_points(core / size))
+    a, b, c = np.moveaxis(hull.vertices[hull.faces], 1, 0)
+    across = _unit(np.cross(b - a, c - a))  # where a hull within a convex body is farthest from it
+    reach = np.linalg.norm(across * semi_axes_m, axis=1)
+    off_m = float((reach - (across @ core.T).max(axis=1) - radius_m).max())
     return RoundedHull(core, radius_m, off_m)
 
 
-def _directions(chords: int) -> FloatArray:
-    """Return unit vectors all around, those along the axes among them."""
-    found: FloatArray = Triangles.of(manifold3d().Manifold.sphere(1.0, chords)).vertices
-    found /= np.linalg.norm(found, axis=1)[:, None]
+def _unit(vectors: FloatArray) -> FloatArray:
+    found: FloatArray = vectors / np.linalg.norm(vectors, axis=1)[:, None]
     return found

@@ -14,8 +14,9 @@ from cagepose.exchange.model_bodies import WORLD_BODY, ModelBodies
 from cagepose.exchange.model_contacts import ModelContacts
 from cagepose.exchange.model_friction import scene_friction
 from cagepose.exchange.model_names import name_them
-from cagepose.exchange.model_overlaps import freed
-from cagepose.exchange.model_shapes import GeomShapes, reach_m
+from cagepose.exchange.model_overlaps import freed, why_not
+from cagepose.exchange.model_root import short_path
+from cagepose.exchange.model_shapes import LEFT_OUT, GeomShapes, reach_m
 from cagepose.exchange.model_text import ModelText, read_model_text
 from cagepose.exchange.solids_document import METRES, SOLIDS, kept_friction
 from cagepose.model.pose import Pose
@@ -61,13 +62,17 @@ def model_document(source: str, chosen: Chosen) -> tuple[Data, list[str]]:
     """
     mujoco()
     text = read_model_text(source, SOLIDS, chosen.root)
-    kept, notes = _beside(text), list[str]()
+    kept = _beside(text)
     beside = read_beside(kept) if kept else {}
-    if beside is None:
-        notes.append(spoilt(Path(source).name))
+    told = [] if beside is not None else [spoilt(Path(source).name)]
     found = compiled(text, source, chosen.keyframe, chosen.qpos)
-    reader = _Reader(source, found, beside or {}, notes, is_urdf=text.is_urdf)
-    return reader.document(chosen.object_name, chosen.cage_names), notes
+    reader = _Reader(source, found, beside or {}, text, with_hulls=not text.is_urdf)
+    data = reader.document(chosen.object_name, chosen.cage_names)
+    if text.is_urdf and (problem := why_not(data)):
+        reader = _Reader(source, found, beside or {}, text, with_hulls=True)
+        data = reader.document(chosen.object_name, chosen.cage_names)
+        told.append(f"meshes are their hulls here: of the meshes themselves, one {problem}")
+    return data, told + reader.notes
 
 
 def _beside(text: ModelText) -> str:
@@ -79,12 +84,13 @@ def _beside(text: ModelText) -> str:
 
 
 class _Reader:
-    def __init__(self, source: str, compiled: Data, beside: Data, notes: list[str], *, is_urdf: bool) -> None:
-        self.source, self.beside, self.notes, self.is_urdf = source, beside, notes, is_urdf
+    def __init__(self, source: str, compiled: Data, beside: Data, text: ModelText, *, with_hulls: bool) -> None:
+        self.source, self.beside, self.text = source, beside, text
+        self.notes = list[str]()
         self.bodies, self.contacts = ModelBodies(source, compiled), ModelContacts(compiled)
-        self.shapes = GeomShapes(notes)
+        self.shapes = GeomShapes(self.notes, None if with_hulls else text.files)
         self.hulls: list[str] = compiled["hulls"]
-        self.balanced: list[str] = compiled["inertia"]
+        self.impossible: list[str] = compiled["inertia"]
 
     def document(self, object_name: str | None, cage_names: Sequence[str]) -> Data:
         """Return the scene file's data."""
@@ -96,15 +102,13 @@ class _Reader:
         parts, walls = self.touching(of_object, of_cage)
         left_out = list[str](beside.get("left_out", ()))
         parts, walls = (self.shapes.known(geoms, left_out) for geoms in (parts, walls))
+        if not (parts and walls):
+            self.refuse_nothing(of_object, of_cage, bool(left_out))
         found: Data = {"name": beside.get("name") or Path(self.source).stem, "units": {"length": "m"}}
-        of_part = [self.shapes.shape(geom, self.place(geom, held), parts) for geom in parts if geom["kind"] != "plane"]
+        of_part = [shape for geom in parts for shape in self.shapes.shapes(geom, self.place(geom, held), parts)]
         reach = max(map(reach_m, of_part), default=0.0)
         found["object"] = {"shapes": of_part, **self.inertial(of_object, held), "pose": METRES.pose(bodies.pose(held))}
         found["cage"] = self.cage(walls, of_cage, held, reach)
-        for body, what in ((found["object"], "the object"), (found["cage"], "the cage")):
-            if not any(body.get(key) for key in ("shapes", "points", "bodies")):
-                message = f"has nothing that touches in what is {what}; choose other bodies with --object and --cage"
-                raise SceneFileError([FileProblem((), message, self.source)])
         found["loads"] = self.loads()
         found, inside, notes = freed(found, reach, self.source)
         self.notes += notes
@@ -112,6 +116,29 @@ class _Reader:
         if left_out + inside:
             found["left_out"] = left_out + inside
         return found | {key: beside[key] for key in KEPT if key in beside}
+
+    def refuse_nothing(self, of_object: set[int], of_cage: set[int], is_unknown: bool) -> None:
+        """
+        Raises
+        ------
+        SceneFileError
+            There is no object or no cage, and why.
+        """
+        there, remedy = self.bodies.with_geoms(), "choose other bodies with --object and --cage"
+        if is_unknown:
+            message = f"has nothing that touches but {self.notes[-1].removeprefix(LEFT_OUT)}"
+        elif len(there) == 1:
+            meshes = list(self.text.files.values())
+            files = f"--object {short_path(meshes[0])} --cage FILE" if len(meshes) == 1 else ""
+            remedy = f"join its mesh with that: cagepose import {files}" if files else "add that to the model"
+            message = f"has one body alone, and nothing that holds it; {remedy}"
+        elif there & of_object and there & of_cage:
+            message = f"lets no shape of the object touch one of the cage (by types, exclusions, parents); {remedy}"
+        else:
+            message = (
+                f"has nothing that touches in what is {'the cage' if there & of_object else 'the object'}; {remedy}"
+            )
+        raise SceneFileError([FileProblem((), message, self.source)])
 
     def note_bodies(self, of_object: set[int], of_cage: set[int], held: int) -> None:
         bodies = self.bodies
@@ -122,11 +149,9 @@ class _Reader:
         ):
             if names:
                 self.notes.append(f"{what} {few(names, SHOWN)}")
-        if self.balanced:
-            self.notes.append(
-                "a body's moments of inertia are impossible there (one is greater than the two others together): here,"
-                " all three are their mean"
-            )
+        impossible = [name for name in self.impossible if name in map(bodies.name, of_object)]
+        if impossible:
+            self.notes.append(f"the moments of inertia of {few(impossible)} are none of any body: here, their mean")
 
     def touching(self, of_object: set[int], of_cage: set[int]) -> tuple[list[Data], list[Data]]:
         """Return the geoms of the object and of the cage that can touch one of the other, with labels."""
@@ -158,23 +183,23 @@ class _Reader:
         shapes = [geom for geom in standing if geom not in points]
         found: Data = {
             "points": {geom["label"]: self.place(geom, frame).position_m.tolist() for geom in points},
-            "shapes": [self.wall(geom, frame, held, reach, shapes) for geom in shapes],
+            "shapes": [shape for geom in shapes for shape in self.wall(geom, frame, held, reach, shapes)],
             "bodies": {},
         }
         for mover in dict.fromkeys(body for body in movers.values() if body is not None):
             own = [geom for geom in walls if movers[geom["number"]] == mover]
             found["bodies"][self.bodies.name(mover)] = {
-                "shapes": [self.wall(geom, mover, held, reach, own) for geom in own],
+                "shapes": [shape for geom in own for shape in self.wall(geom, mover, held, reach, own)],
                 "pose": METRES.pose(self.bodies.in_frame(mover, Pose(), frame)),
             }
         found = {key: value for key, value in found.items() if value}
         return found | {"pose": METRES.pose(self.bodies.pose(frame))}
 
-    def wall(self, geom: Data, frame: int, held: int, reach: float, beside: Sequence[Data]) -> Data:
+    def wall(self, geom: Data, frame: int, held: int, reach: float, beside: Sequence[Data]) -> list[Data]:
         place = self.place(geom, frame)
         if geom["kind"] == "plane":
-            return self.shapes.plane(geom, place, self.bodies.in_frame(held, Pose(), frame).position_m, reach)
-        return self.shapes.shape(geom, place, beside)
+            return [self.shapes.plane(geom, place, self.bodies.in_frame(held, Pose(), frame).position_m, reach)]
+        return self.shapes.shapes(geom, place, beside)
 
     def place(self, geom: Data, frame: int) -> Pose:
         return self.bodies.in_frame(geom["body"], Pose(geom["position"], geom["quaternion"]), frame)
@@ -185,7 +210,9 @@ class _Reader:
             self.notes.append("the object has no mass there: here, uniform density")
             return {}
         opened = [
-            geom["mesh"] for geom in self.bodies.geoms if geom["body"] in of_object and geom.get("mesh") in self.hulls
+            geom.get("label") or geom["name"]
+            for geom in self.bodies.geoms
+            if geom["body"] in of_object and geom.get("mesh") in self.hulls
         ]
         if opened:
             self.notes.append(
@@ -207,7 +234,7 @@ class _Reader:
     def friction(self, parts: Sequence[Data], walls: Sequence[Data]) -> Data:
         if "friction" in self.beside:
             return kept_friction(self.beside, [geom["label"] for geom in (*parts, *walls)])
-        if self.is_urdf:
+        if self.text.is_urdf:
             self.notes.append("friction: none, as URDF has none")
             return {}
         plain, of, uneven = scene_friction(*({geom["label"]: geom for geom in geoms} for geoms in (parts, walls)))

@@ -57,10 +57,19 @@ def freed(data: Data, reach_m: float, source: str) -> Freed:
         )
         left_out.append(name)
         data = _without(data, inside)
-        if not any(data["cage"].get(key) for key in ("points", "shapes", "bodies")):
+        if not any(data.get("cage", {}).get(key) for key in ("points", "shapes", "bodies")):
             message = f"has the object inside all of its cage ({name!r}); choose a pose with --keyframe or --qpos"
             raise SceneFileError([FileProblem((), message, source)])
     return Freed(data, left_out, notes)
+
+
+def why_not(data: Data) -> str | None:
+    """Return what is wrong with a scene, if something is."""
+    try:
+        build_scene(SceneModel.model_validate(data), None)
+    except SceneError as error:
+        return error.problems[0].message
+    return None
 
 
 def _deepest(data: Data) -> StartsInside | None:

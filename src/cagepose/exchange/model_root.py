@@ -57,7 +57,7 @@ class ModelRoot:
         where = "the model's folder" if self._root is None else f"--root {self._root}"
         remedy = "copy it there"
         if both != Path(both.anchor) and found.exists():
-            remedy = f"give --root {_short(both)}, under which files may lie then, or copy it there"
+            remedy = f"give --root {short_path(both)}, under which files may lie then, or copy it there"
         raise self._refused(f"names {name[:SHOWN]!r}, which lies outside of {where}; {remedy}")
 
     def first(self, places: Iterable[Path], name: str) -> Path:
@@ -77,27 +77,35 @@ class ModelRoot:
                 return found
         if outside is not None:
             self.inside(outside, name)
-        if package := PACKAGE.match(name):
-            where, remedy = "in no folder that is or has", f"give the folder that holds {package[1]} with --root"
-            raise self._refused(f"names {name[:SHOWN]!r}, a file {where} the package {package[1]!r}; {remedy}")
-        raise self._refused(f"names {name[:SHOWN]!r}, and there is no such file; copy it there, or correct the name")
+        shown = f"names {name[:SHOWN]!r}"
+        if (package := PACKAGE.match(name)) and not any(self._packages(package[1])):
+            remedy = f"give the folder that holds {package[1]}, or one above it, with --root"
+            raise self._refused(f"{shown}, and no folder above the model is or has that package; {remedy}")
+        raise self._refused(f"{shown}, and there is no such file; copy it there, or correct the name")
 
     def places(self, name: str) -> Iterator[Path]:
-        """Yield where a name of a URDF may mean: as ROS takes it, packages in the folders above the model, nearest
-        first.
-
-        A folder is the package if it is called so or its package.xml says so; else the one in it that is called so.
+        """Yield what a name of a URDF may mean: a file of a package, as ROS takes it; one that the folder of the model
+        or the root has.
         """
         package = PACKAGE.match(name)
-        if package is None:
-            yield self._beside / PLAIN_FILE.sub("", name)
+        if package is not None:
+            yield from (folder / package[2] for folder in self._packages(package[1]))
             return
+        plain = PLAIN_FILE.sub("", name)
+        yield self._beside / plain
+        yield self.folder / plain
+
+    def _packages(self, package: str) -> Iterator[Path]:
+        """Yield folders that may be a package, those above the model, nearest first: one that is called so or whose
+        package.xml says so, and one in it that is called so.
+        """
         for above in (self._beside, *self._beside.parents):
             if not above.is_relative_to(self.folder):
                 return
-            if package[1] in (above.name, self._package_name(above)):
-                yield above / package[2]
-            yield above / package[1] / package[2]
+            if package in (above.name, self._package_name(above)):
+                yield above
+            if self._without_links(above / package, package).is_dir():
+                yield above / package
 
     def _package_name(self, folder: Path) -> str | None:
         described = (folder / "package.xml").resolve()
@@ -119,7 +127,7 @@ class ModelRoot:
         return SceneFileError([FileProblem((), message, self._source)])
 
 
-def _short(folder: Path) -> str:
-    """Return a folder as a user would type it."""
-    relative = os.path.relpath(folder)
-    return relative if len(relative) < len(str(folder)) else str(folder)
+def short_path(path: str | os.PathLike[str]) -> str:
+    """Return a path as a user would type it."""
+    relative = os.path.relpath(path)
+    return relative if len(relative) < len(os.fspath(path)) else os.fspath(path)

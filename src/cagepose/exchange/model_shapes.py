@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from cagepose.errors import SceneError
 from cagepose.exchange.compile_model import FLAT
 from cagepose.exchange.ellipsoid import rounded_hull
 from cagepose.exchange.solids_document import METRES
-from cagepose.exchange.tolerances import VOLUME_NOT_CONVEX
+from cagepose.exchange.stl import MM_PER_M
+from cagepose.exchange.tolerances import SAME_OF_SIZE, VOLUME_NOT_CONVEX
+from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
+from cagepose.files.meshes.mended import mended
+from cagepose.files.meshes.mesh_shapes import mesh_shapes
 from cagepose.files.meshes.pieces import MOST_CORNERS
 from cagepose.files.triples import text_of, triples
 from cagepose.model.pose import Pose
@@ -23,7 +29,10 @@ Data = dict[str, Any]
 
 PLANE_OF_REACH = 20.0
 """Width of the box that stands for a plane, in distances of the object's farthest point: no plane of MuJoCo ends."""
+MOST_TRIANGLES = 20_000
+"""Meshes of more stand for their hulls: what they are is not looked for."""
 ROUND = ("sphere", "capsule", "cylinder", "ellipsoid")
+LEFT_OUT = "left out: "
 UNKNOWN = {
     "hfield": "a height field; give its surface as a mesh, in convex pieces",
     "sdf": "a signed distance field; give its surface as a mesh, in convex pieces",
@@ -34,33 +43,37 @@ UNKNOWN = {
 
 
 class GeomShapes:
-    """Makes shapes, and notes what they are not; ``notes`` is added to."""
+    """Makes shapes, and notes what they are not.
 
-    def __init__(self, notes: list[str]) -> None:
-        self.notes = notes
+    ``notes`` is added to. ``files`` are those of meshes that are what they are, by their names, as in URDF; None: they
+    stand for their hulls, as in MJCF.
+    """
+
+    def __init__(self, notes: list[str], files: Mapping[str, str] | None) -> None:
+        self.notes, self.files = notes, files
 
     def known(self, geoms: Sequence[Data], left_out: list[str]) -> list[Data]:
         """Return the geoms that can be shapes; ``left_out`` gets the names of the others."""
         for geom in geoms:
             if geom["kind"] in UNKNOWN:
-                self.notes.append(f"left out: {geom['label']!r}, {UNKNOWN[geom['kind']]}")
+                self.notes.append(f"{LEFT_OUT}{geom['label']!r}, {UNKNOWN[geom['kind']]}")
                 left_out.append(geom["label"])
         return [geom for geom in geoms if geom["kind"] not in UNKNOWN]
 
-    def shape(self, geom: Data, place: Pose, beside: Sequence[Data]) -> Data:
+    def shapes(self, geom: Data, place: Pose, beside: Sequence[Data]) -> list[Data]:
         """Return a geom, which is no plane, at a place; ``beside``: all geoms of its body."""
         size = geom["size"]
+        if geom["kind"] == "mesh":
+            return self.mesh(geom, place, beside)
         if geom["kind"] == "box":
             numbers: Data = {"box": {"size": [2.0 * half for half in size]}}
         elif geom["kind"] == "sphere":
             numbers = {"sphere": {"radius": size[0]}}
         elif geom["kind"] == "ellipsoid":
             numbers = self.ellipsoid(geom)
-        elif geom["kind"] == "mesh":
-            numbers = self.hull(geom, as_facets=not any(one["kind"] in ROUND for one in beside))
         else:
             numbers = {geom["kind"]: {"radius": size[0], "length": 2.0 * size[1]}}
-        return {"name": geom["label"], **numbers, **METRES.pose(place, turn=False)}
+        return [{"name": geom["label"], **numbers, **METRES.pose(place, turn=False)}]
 
     def plane(self, geom: Data, place: Pose, object_at_m: Any, reach_m: float) -> Data:
         """Return a plane as a box under the object, which is at a place in the same frame."""
@@ -78,7 +91,7 @@ class GeomShapes:
 
     def ellipsoid(self, geom: Data) -> Data:
         semi_axes = np.array(geom["size"], dtype=np.float64)
-        if np.ptp(semi_axes) == 0.0:
+        if np.ptp(semi_axes) <= SAME_OF_SIZE * semi_axes.max():
             return {"sphere": {"radius": semi_axes[0]}}
         found = rounded_hull(semi_axes)
         self.notes.append(
@@ -87,21 +100,53 @@ class GeomShapes:
         )
         return {"convex": {"vertices": found.core_m.tolist(), "radius": found.radius_m}}
 
-    def hull(self, geom: Data, *, as_facets: bool) -> Data:
-        """Return the hull of a mesh; of many corners, as facets, which take less time but may touch nothing round."""
-        label, corners = geom["label"], np.array(geom["vertices"])
-        is_large = as_facets and len(corners) > MOST_CORNERS
+    def mesh(self, geom: Data, place: Pose, beside: Sequence[Data]) -> list[Data]:
+        """Return what a mesh is, if it is to be that and is not convex; else its hull."""
+        is_alone = not any(one["kind"] in ROUND for one in beside)
+        corners = np.array(geom["vertices"])
+        is_large = is_alone and len(corners) > MOST_CORNERS
         whole = manifold3d().Manifold.hull_points(corners) if is_large else None
         full_m3 = shape_moments(Convex(corners)).volume_m3 if whole is None else whole.volume()
-        if not geom["is_closed"]:
-            self.notes.append(f"the mesh {label!r} is open, or its sides are not all turned alike: here, its hull")
-        elif abs(geom["volume"]) < (1.0 - VOLUME_NOT_CONVEX) * full_m3:
-            share = 1.0 - abs(geom["volume"]) / full_m3
-            self.notes.append(f"the mesh {label!r} is not convex: here, its hull, {share:.1%} of which is too much")
-        if whole is None:
-            return {"convex": {"vertices": geom["vertices"]}}
-        mesh = Triangles.of(whole)
-        return {"facets": {"vertices": text_of(mesh.vertices.tolist()), "triangles": text_of(mesh.faces.tolist())}}
+        share = 1.0 - abs(geom["volume"]) / full_m3
+        if not geom["is_closed"] or share > VOLUME_NOT_CONVEX:
+            what = f"not convex: here, its hull, {share:.1%} of which is too much"
+            if not geom["is_closed"]:
+                what = "open, or its sides are not all turned alike: here, its hull"
+            if self.files is not None and (path := self.files.get(geom["file"] or "")):
+                try:
+                    return self.own_shapes(geom, Path(path), place)
+                except SceneError as error:
+                    what = f"its hull here, as it {error.problems[0].message}"
+            self.notes.append(f"the mesh {geom['label']!r} is {what}")
+        numbers: Data = {"convex": {"vertices": geom["vertices"]}}
+        if whole is not None:  # takes less time, but may touch nothing round of its own body
+            mesh = Triangles.of(whole)
+            vertices, triangles = text_of(mesh.vertices.tolist()), text_of(mesh.faces.tolist())
+            numbers = {"facets": {"vertices": vertices, "triangles": triangles}}
+        return [{"name": geom["label"], **numbers, **METRES.pose(place, turn=False)}]
+
+    def own_shapes(self, geom: Data, path: Path, place: Pose) -> list[Data]:
+        """Return the shapes of a mesh that is at a place, as those of solids are found.
+
+        Raises
+        ------
+        SceneError
+            It cannot be used.
+        """
+        surface, scale = mesh_file.read_solids(path, split=False)[""], np.array(geom["scale"])
+        if len(surface.faces) > MOST_TRIANGLES:
+            raise mesh_file.refused(f"has {len(surface.faces):,} triangles, more than {MOST_TRIANGLES:,}; simplify it")
+        if scale.prod() <= 0.0:
+            raise mesh_file.refused("is mirrored by its scale; mirror it in its file")
+        mesh, moved = mended(Triangles(MM_PER_M * scale * surface.vertices, surface.faces))
+        mesh_file.checked(mesh, "")
+        found = mesh_shapes(mesh, geom["label"], "mm")
+        if moved > 0.0:
+            self.notes.append(f"{geom['label']!r} has cracks of up to {moved:.2g} mm, which are closed here")
+        self.notes += found.notes
+        of_file = place @ Pose(geom["mesh_position"], geom["mesh_quaternion"]).inverse()
+        metres = [mesh_file.scaled(shape, 1.0 / MM_PER_M) for shape in found.shapes]
+        return [METRES.shape(shape.moved(of_file @ shape.pose_body_shape)) for shape in metres]
 
 
 def reach_m(shape: Data) -> float:
