@@ -299,6 +299,7 @@ HOSTILE = {
     ),
     "included": ('<mujoco><include file="meshes/bomb.xml"/></mujoco>', "declares a document type"),
     "large": ("<mujoco>" + " " * (4 * 1024**2) + "</mujoco>", "is larger than 4 MiB"),
+    "many": ("<mujoco>" + 50_001 * "<b/>" + "</mujoco>", "has more than 50,000 elements"),
     "no body": ("<mujoco><worldbody/></mujoco>", "has no bodies in its world"),
     "nothing": (
         "<mujoco><worldbody><body><freejoint/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body></worldbody>"

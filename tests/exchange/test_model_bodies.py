@@ -211,10 +211,20 @@ def test_what_the_object_is_deep_in_is_left_out_and_each_run_warns(tmp_path, cap
 def test_an_object_inside_all_of_its_cage_is_told_to_stand_elsewhere(tmp_path):
     world = BURIED.format(z=0.08).replace('name="table"', 'name="table" contype="2" conaffinity="1"')
     source = written(tmp_path, cube_dot_xml=f"<mujoco><worldbody>{world}</worldbody></mujoco>")
-    with pytest.raises(
-        SceneFileError, match=r"inside all of its cage \('table'\); choose a pose with --keyframe or --qp"
-    ):
+    with pytest.raises(SceneFileError, match=r"inside all of its cage \('table'\); choose another pose with --key"):
         imported(str(source))
+
+
+def test_an_object_inside_of_much_is_told_to_stand_elsewhere(tmp_path):
+    balls = "".join(f'<geom size="0.1" pos="0 0 {0.08 + 1e-3 * k}"/>' for k in range(25))
+    with pytest.raises(SceneFileError, match="has the object inside more than 20 shapes of its cage, 'geom"):
+        imported(str(written(tmp_path, cube_dot_xml=mjcf(BURIED.format(z=0.08) + balls))))
+
+
+def test_too_many_shapes_are_told_by_their_number(tmp_path):
+    cube = '<body name="cube" pos="0 0 3"><freejoint/><geom size=".1"/></body>'
+    with pytest.raises(SceneFileError, match=r"has 2,101 shapes in object and cage; choose at most 2,000 with --cage"):
+        imported(str(written(tmp_path, cube_dot_xml=mjcf(cube + 2099 * '<geom size=".1"/>'))))
 
 
 def test_inertia_that_no_body_has_becomes_one(tmp_path):

@@ -26,6 +26,8 @@ Data = dict[str, Any]
 """What is known of a geom, or of a part of a scene file."""
 
 KEPT = ("method", "metric", "tolerances")
+MOST_GEOMS = 2_000
+"""Of the object and the cage together: all pairs of them are looked at."""
 SHOWN = 12
 """So many names in a note."""
 
@@ -157,6 +159,11 @@ class _Reader:
         """Return the geoms of the object and of the cage that can touch one of the other, with labels."""
         geoms = self.bodies.geoms
         parts, walls = ([geom for geom in geoms if geom["body"] in those] for those in (of_object, of_cage))
+        if len(parts) + len(walls) > MOST_GEOMS:
+            message = (
+                f"has {len(parts) + len(walls):,} shapes in object and cage; choose at most {MOST_GEOMS:,} with --cage"
+            )
+            raise SceneFileError([FileProblem((), message, self.source)])
         pairs = self.contacts.touching(parts, walls)
         seen = {number for pair in pairs for number in pair}
         name_them([geom for geom in (*parts, *walls) if geom["number"] in seen], self.bodies, of_cage)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from pydantic import ValidationError
 
 from cagepose.errors import FileProblem, SceneError, SceneFileError
 from cagepose.files.build import build_scene
@@ -15,6 +16,9 @@ Data = dict[str, Any]
 
 SHALLOW_OF_REACH = 0.02
 """Fraction of how far the object reaches from its origin: out of what it is in by less, it is lifted."""
+MOST_LEFT_OUT = 20
+"""A scene from whose cage more would have to be taken away is none. Each takes a check of the whole scene."""
+REMEDY = "choose another pose with --keyframe or --qpos"
 LIFTS = (1.001, 1.5, 2.0, 4.0)
 """By how many depths."""
 
@@ -42,23 +46,25 @@ def freed(data: Data, reach_m: float, source: str) -> Freed:
     Raises
     ------
     SceneFileError
-        It starts in all of the cage.
+        It starts in all of the cage, or in more than `MOST_LEFT_OUT` of its elements.
     """
     left_out, notes = list[str](), list[str]()
     while (inside := _deepest(data)) is not None:
         name = _name(data, inside)
+        if len(left_out) >= MOST_LEFT_OUT:
+            message = (
+                f"has the object inside more than {MOST_LEFT_OUT} shapes of its cage, {name!r} among them; {REMEDY}"
+            )
+            raise SceneFileError([FileProblem((), message, source)])
         if inside.depth_m <= SHALLOW_OF_REACH * reach_m and (lifted := _lifted(data, inside.depth_m)):
             by_m, data = lifted
             notes.append(f"the object starts {millimetres(by_m)} higher, as it is in {name!r} there")
             continue
-        notes.append(
-            f"left out: {name!r}, as the object starts {millimetres(inside.depth_m)} inside it; choose another pose"
-            " with --keyframe or --qpos"
-        )
+        notes.append(f"left out: {name!r}, as the object starts {millimetres(inside.depth_m)} inside it; {REMEDY}")
         left_out.append(name)
         data = _without(data, inside)
         if not any(data.get("cage", {}).get(key) for key in ("points", "shapes", "bodies")):
-            message = f"has the object inside all of its cage ({name!r}); choose a pose with --keyframe or --qpos"
+            message = f"has the object inside all of its cage ({name!r}); {REMEDY}"
             raise SceneFileError([FileProblem((), message, source)])
     return Freed(data, left_out, notes)
 
@@ -69,6 +75,8 @@ def why_not(data: Data) -> str | None:
         build_scene(SceneModel.model_validate(data), None)
     except SceneError as error:
         return error.problems[0].message
+    except ValidationError:  # told where the file is made of the data
+        return None
     return None
 
 
@@ -77,6 +85,8 @@ def _deepest(data: Data) -> StartsInside | None:
         build_scene(SceneModel.model_validate(data), None)
     except SceneError as error:
         return next((problem for problem in error.problems if isinstance(problem, StartsInside)), None)
+    except ValidationError:
+        return None
     return None
 
 

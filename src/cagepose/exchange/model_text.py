@@ -14,6 +14,7 @@ from xml.etree.ElementTree import Element
 from cagepose.errors import FileProblem, SceneFileError
 from cagepose.exchange.model_root import ModelRoot
 from cagepose.exchange.model_xml import LineText, Places, parsed
+from cagepose.files.read import MAX_FILE_BYTES
 
 MAX_MESH_BYTES = 64 * 1024 * 1024
 """All files that a model names have at most so many bytes together."""
@@ -89,6 +90,7 @@ class _Reading:
         self.is_urdf = self.model.tag == "robot"
         self.root = ModelRoot(source, root)
         self.n_bytes, self.included = 0, {Path(source).resolve()}
+        self.n_text = Path(source).stat().st_size
         self.files: dict[str, str] = {}
         self.names: dict[tuple[str, ...], str] = {}
 
@@ -122,7 +124,10 @@ class _Reading:
         if path in self.included:
             raise self.refused(f"includes {name!r} twice, or in itself; remove all but one", element)
         self.included.add(path)
-        self.count(path)
+        self.n_text += path.stat().st_size
+        if self.n_text > MAX_FILE_BYTES:
+            limit = f"{MAX_FILE_BYTES // 1024**2} MiB"
+            raise self.refused(f"makes the model larger than {limit}, the size limit; put meshes into files", element)
         holder = parsed(path, str(path), self.places)
         self.include(holder, depth + 1)
         return list(holder)

@@ -13,6 +13,8 @@ from cagepose.errors import FileProblem, SceneFileError
 from cagepose.files.read import MAX_FILE_BYTES, read_text
 
 DECLARATIONS = re.compile("<!(DOCTYPE|ENTITY)", re.IGNORECASE)
+MOST_ELEMENTS = 50_000
+"""Of a model with all that it includes. The greatest that we know, a dog with its bones, has 2,500."""
 SAID_LINE = re.compile(r",? ?\bline (\d+)")
 """How MuJoCo says where an element stands."""
 
@@ -34,7 +36,7 @@ def parsed(path: Path, source: str, places: Places) -> Element:
     Raises
     ------
     SceneFileError
-        It cannot be read, is larger than `MAX_FILE_BYTES`, is no XML, or declares entities.
+        It cannot be read, is larger than `MAX_FILE_BYTES`, is no XML, declares entities, or has too many elements.
     """
     if path.is_file() and path.stat().st_size > MAX_FILE_BYTES:
         message = f"is larger than {MAX_FILE_BYTES // 1024**2} MiB, the size limit of models; put meshes into files"
@@ -46,6 +48,9 @@ def parsed(path: Path, source: str, places: Places) -> Element:
     builder, parser = TreeBuilder(), expat.ParserCreate("utf-8")
 
     def start(tag: str, attributes: dict[str, str]) -> None:
+        if len(places) >= MOST_ELEMENTS:
+            message = f"has more than {MOST_ELEMENTS:,} elements; import the bodies that touch alone"
+            raise SceneFileError([FileProblem((), message, source, parser.CurrentLineNumber, 1)])
         places[builder.start(tag, attributes)] = Place(source, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
 
     parser.StartElementHandler, parser.EndElementHandler = start, builder.end
