@@ -131,8 +131,10 @@ class _Reader:
             message = f"has nothing that touches but {self.notes[-1].removeprefix(LEFT_OUT)}"
         elif len(there) == 1:
             meshes = list(self.text.files.values())
-            files = f"--object {short_path(meshes[0])} --cage FILE" if len(meshes) == 1 else ""
-            remedy = f"join its mesh with that: cagepose import {files}" if files else "add that to the model"
+            remedy = "add that to the model"
+            if len(meshes) == 1:
+                files = f"--object {short_path(meshes[0])} --cage FILE"
+                remedy = f"join its mesh with that, one as the object: cagepose import {files}"
             message = f"has one body alone, and nothing that holds it; {remedy}"
         elif there & of_object and there & of_cage:
             message = f"lets no shape of the object touch one of the cage (by types, exclusions, parents); {remedy}"

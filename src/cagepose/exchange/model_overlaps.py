@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from pydantic import ValidationError
 
 from cagepose.errors import FileProblem, SceneError, SceneFileError
-from cagepose.files.build import build_scene
-from cagepose.files.schema import SceneModel
+from cagepose.files.scene_data import scene_of
 from cagepose.model.scene import StartsInside, millimetres
 
 Data = dict[str, Any]
@@ -72,21 +70,17 @@ def freed(data: Data, reach_m: float, source: str) -> Freed:
 def why_not(data: Data) -> str | None:
     """Return what is wrong with a scene, if something is."""
     try:
-        build_scene(SceneModel.model_validate(data), None)
+        scene_of(data)
     except SceneError as error:
         return error.problems[0].message
-    except ValidationError:  # told where the file is made of the data
-        return None
     return None
 
 
 def _deepest(data: Data) -> StartsInside | None:
     try:
-        build_scene(SceneModel.model_validate(data), None)
+        scene_of(data)
     except SceneError as error:
         return next((problem for problem in error.problems if isinstance(problem, StartsInside)), None)
-    except ValidationError:
-        return None
     return None
 
 
