@@ -102,9 +102,9 @@ def test_a_bar_with_round_edges_lands_as_one_of_boxes_and_rods(friction, cases):
         ours = run(scene([rounded_bar(*size)], [FLOOR], pose, friction))
         theirs = run(scene(bar_of_primitives(*size), [FLOOR], pose, friction))
         assert ours.verdict == theirs.verdict
-        apart = ours.phases[-1].pose.position_m - theirs.phases[-1].pose.position_m
-        assert np.abs(apart).max() < 1e-8
-        assert abs(ours.phases[-1].pose.position_m[2] - theirs.phases[-1].pose.position_m[2]) < 1e-11
+        pose, other = ours.phases[-1].pose, theirs.phases[-1].pose
+        assert abs(pose.position_m[2] - other.position_m[2]) < 1e-11  # along the floor, without friction, it may go on
+        assert np.abs(pose.rotation[2] - other.rotation[2]).max() < 1e-9
 
 
 def test_a_ball_and_a_post_stand_in_the_end_of_a_slot():

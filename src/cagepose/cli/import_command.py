@@ -40,6 +40,21 @@ def import_command(
             " Without a FILE: a file, as for --object, which may be given again at another place.",
         ),
     ] = (),
+    root: Annotated[
+        FileName | None,
+        Parameter(
+            help="The folder under which a robot model's meshes and includes lie, packages too; left out: the model's."
+        ),
+    ] = None,
+    keyframe: Annotated[
+        str | None, Parameter(help="The keyframe of a robot model at which its bodies are taken.")
+    ] = None,
+    qpos: Annotated[
+        str | None,
+        Parameter(
+            help="Where its joints are: all coordinates, or JOINT=NUMBER for some, such as 'left=0.02 right=0.02'."
+        ),
+    ] = None,
     fillets: Annotated[
         bool, Parameter(help="Whether hollow roundings of STEP files stay; else walls go on to where they meet.")
     ] = True,
@@ -67,7 +82,7 @@ def import_command(
         if file is None:
             found = joined(PlacedFile.of(str(object)), [PlacedFile.of(one) for one in cage], fillets=fillets)
         else:
-            found = imported(file, object, cage, fillets=fillets)
+            found = imported(file, object, cage, fillets=fillets, root=root, keyframe=keyframe, qpos=qpos)
         save_scene(found.scene, out)
     except OSError as error:
         sys.stderr.write(refusal(f"--out {out}", error) + "\n")

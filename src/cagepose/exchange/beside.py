@@ -15,7 +15,7 @@ from cagepose.model.scene import Scene
 from cagepose.model.wording import few
 
 NOTE_VERSION = 1
-KEPT = ("name", "method", "metric", "tolerances")
+KEPT = ("name", "method", "metric", "tolerances", "left_out")
 """Keys of the scene file that stand in the note as they are."""
 
 
@@ -71,4 +71,5 @@ def read_beside(text: str) -> dict[str, Any] | None:
         return None
     friction = found.get("friction", {"of": {}, "coefficient": None})
     is_whole = isinstance(friction, dict) and "coefficient" in friction and isinstance(friction.get("of"), dict)
+    is_whole = is_whole and isinstance(found.get("left_out", []), list)
     return found if is_whole and isinstance(found.get("points"), list) else None

@@ -54,7 +54,7 @@ class ModelBodies:
         raise self._refused(f"has no body {name!r}; its bodies: {self._list(range(1, len(self._bodies)))}")
 
     def free(self) -> int:
-        """Return the only body that moves freely.
+        """Return the only body that moves freely, or the only one at all.
 
         Raises
         ------
@@ -64,6 +64,12 @@ class ModelBodies:
         found = [number for number, body in enumerate(self._bodies) if body["is_free"]]
         if len(found) == 1:
             return found[0]
+        if not found and len(alone := self.with_geoms() - {WORLD_BODY}) == 1 == len(self._bodies) - 1:
+            return alone.pop()
+        if len(self._bodies) == 1:
+            raise self._refused(
+                "has no bodies in its world, so nothing that is held; put the part into a body of its own"
+            )
         choice = found or range(1, len(self._bodies))
         what = "no body that moves freely" if not found else f"{len(found)} bodies that move freely"
         raise self._refused(f"has {what}; say which is held, with --object and one of: {self._list(choice)}")
@@ -75,6 +81,22 @@ class ModelBodies:
             if body["parent"] in found:
                 found.add(number)
         return found
+
+    def with_geoms(self) -> set[int]:
+        """Return the bodies that have any."""
+        return {geom["body"] for geom in self.geoms}
+
+    def mover(self, body: int, of_cage: set[int]) -> int | None:
+        """Return the body of the cage whose joint moves a body, itself or the next above; None: it stands still."""
+        while body in of_cage and body != WORLD_BODY:
+            if self._bodies[body]["is_jointed"]:
+                return body
+            body = self._bodies[body]["parent"]
+        return None
+
+    def name(self, body: int) -> str:
+        """Return a body's name; of one without, "body 3"."""
+        return self._names[body]
 
     def jointed(self, bodies: Iterable[int]) -> list[str]:
         """Return the names of those that a joint moves."""

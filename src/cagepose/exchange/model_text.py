@@ -1,103 +1,207 @@
-"""The text of an MJCF or URDF file, before any compiler sees it: what could do harm is refused here."""
+"""A model as MuJoCo's compiler may have it: `read_model_text`. What could do harm is refused before that sees it.
+
+All that it includes is in one text, and all meshes are files that were found, by names of ours. What is only seen,
+textures and materials and the visuals of URDF, is not in it.
+"""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
-from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
 
 from cagepose.errors import FileProblem, SceneFileError
-from cagepose.files.read import MAX_FILE_BYTES, read_text
+from cagepose.exchange.model_root import ModelRoot
+from cagepose.exchange.model_xml import LineText, Places, parsed
+from cagepose.files.read import MAX_FILE_BYTES
 
 MAX_MESH_BYTES = 64 * 1024 * 1024
 """All files that a model names have at most so many bytes together."""
 SUFFIXES = (".xml", ".urdf")
+MOST_NESTED = 200
+"""Elements within elements: more, a compiler that calls itself for each may not bear."""
+MESH_SUFFIXES = (".obj", ".stl", ".msh")
+"""What MuJoCo reads as a mesh."""
 FOLDERS = ("meshdir", "texturedir", "assetdir")
-"""Attributes that name a folder."""
-NAME = "file"
-"""Attributes that name a file begin so: file, filename, fileright of a texture."""
-SCHEMES = re.compile("^(package|file|model)://")
-DECLARATIONS = re.compile("<!(DOCTYPE|ENTITY)", re.IGNORECASE)
+SEEN_ALONE = {"mujoco": ("texture", "material", "skin"), "robot": ("visual", "material", "gazebo", "transmission")}
+"""Elements without which bodies stay what they are, by root."""
+SEEN_ALONE_ATTRIBUTES = ("material", "texture")
+XACRO = "is xacro, whose macros only ROS's own program expands; run: xacro FILE > robot.urdf, and give that"
+ATTACHED = "attaches the model {!r}, which import does not read; write both as one file (MuJoCo: MjSpec.to_xml)"
 
 
 class ModelText(NamedTuple):
-    """A model that may be compiled: its root element, and whether it is URDF (else MJCF)."""
+    """A model that may be compiled.
 
-    root: ElementTree.Element
+    Attributes
+    ----------
+    root
+        Its root element, with all that it includes.
+    is_urdf
+        Else it is MJCF.
+    lines
+        What the compiler gets.
+    files
+        The files that it may read, by the names that they have there.
+    """
+
+    root: Element
     is_urdf: bool
+    lines: LineText
+    files: dict[str, str]
 
 
-def read_model_text(source: str, others: Sequence[str] = ()) -> ModelText:
-    """Read and check a model and the files that it includes; ``others``: what suffixes files may have that are read
-    elsewhere.
+def read_model_text(source: str, others: Sequence[str] = (), root: str | None = None) -> ModelText:
+    """Read and check a model and what it includes.
 
-    Raises
-    ------
-    SceneFileError
-        It cannot be read, is no MJCF or URDF, declares entities, names a file outside of its folder, or is too large.
-    """
-    folder = Path(source).parent
-    if Path(source).suffix not in SUFFIXES:
-        message = f"has the suffix {Path(source).suffix!r}; give a file of one of: {', '.join((*SUFFIXES, *others))}"
-        raise SceneFileError([FileProblem((), message, source)])
-    root = _parsed(Path(source), source)
-    if root.tag not in ("mujoco", "robot"):
-        message = f"is XML with the root <{root.tag}>; give MJCF (<mujoco>) or URDF (<robot>)"
-        raise SceneFileError([FileProblem((), message, source)])
-    seen, waiting, n_bytes = {Path(source).resolve()}, [root], 0
-    folders = [folder]
-    while waiting:
-        model = waiting.pop()
-        given = [name for element in model.iter() for key in FOLDERS if (name := element.get(key)) is not None]
-        folders += [_inside(folder, name, source) for name in given]
-        for element in model.iter():
-            names = [name for key, name in element.attrib.items() if key.startswith(NAME)]
-            for path in dict.fromkeys(_inside(where, name, source) for where in folders for name in names):
-                if path in seen or not path.is_file():
-                    continue  # a missing one is told by the compiler, which knows where else to look
-                seen.add(path)
-                n_bytes += path.stat().st_size
-                if n_bytes > MAX_MESH_BYTES:
-                    message = f"names files of more than {MAX_MESH_BYTES // 1024**2} MiB; simplify the meshes"
-                    raise SceneFileError([FileProblem((), message, source)])
-                if element.tag == "include":
-                    waiting.append(_parsed(path, str(path)))
-    return ModelText(root, root.tag == "robot")
-
-
-def _inside(folder: Path, name: str, source: str) -> Path:
-    """Return the path that a name in a model means.
+    Parameters
+    ----------
+    source
+        The file.
+    others
+        What suffixes files may have that are read elsewhere.
+    root
+        The folder under which its files lie; None: its own.
 
     Raises
     ------
     SceneFileError
-        It lies outside of the model's folder, through a link or not.
+        It cannot be read, is no MJCF or URDF, declares entities, names a file outside of its folder or none, or is too
+        large.
     """
-    plain = SCHEMES.sub("", name)
-    try:
-        path = (folder / plain).resolve() if "\0" not in plain else Path("/")
-    except (OSError, RuntimeError):
-        message = f"names {name[:80]!r}, a link that leads to itself; copy the file there"
-        raise SceneFileError([FileProblem((), message, source)]) from None
-    if not path.is_relative_to(Path(source).parent.resolve()):
-        message = f"names {name[:80]!r}, which lies outside of the model's folder; copy it there"
+    suffix = Path(source).suffix
+    if suffix.lower() == ".xacro":
+        raise SceneFileError([FileProblem((), XACRO, source)])
+    if suffix.lower() not in SUFFIXES:
+        message = f"has the suffix {suffix!r}; give a file of one of: {', '.join((*SUFFIXES, *others))}"
         raise SceneFileError([FileProblem((), message, source)])
-    return path
+    return _Reading(source, root).text()
 
 
-def _parsed(path: Path, source: str) -> ElementTree.Element:
-    if path.is_file() and path.stat().st_size > MAX_FILE_BYTES:
-        message = f"is larger than {MAX_FILE_BYTES // 1024**2} MiB, the size limit of models; put meshes into files"
-        raise SceneFileError([FileProblem((), message, source)])
-    text = read_text(path, source)
-    if DECLARATIONS.search(text):
-        message = "declares a document type or entities, which models need not and bombs are made of; remove them"
-        raise SceneFileError([FileProblem((), message, source)])
-    try:
-        return ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
-        line, column = error.position
-        message = f"is not XML ({str(error).partition(':')[0]}); correct this line"
-        raise SceneFileError([FileProblem((), message, source, line, column + 1)]) from None
+class _Reading:
+    def __init__(self, source: str, root: str | None) -> None:
+        self.source = source
+        self.folder, self.places = Path(source).parent, Places()
+        self.model = parsed(Path(source), source, self.places)
+        if self.model.tag not in SEEN_ALONE:
+            message = f"is XML with the root <{self.model.tag}>; give MJCF (<mujoco>) or URDF (<robot>)"
+            raise SceneFileError([FileProblem((), message, source)])
+        self.is_urdf = self.model.tag == "robot"
+        self.root = ModelRoot(source, root)
+        self.n_bytes, self.included = 0, {Path(source).resolve()}
+        self.n_text = Path(source).stat().st_size
+        self.files: dict[str, str] = {}
+        self.names: dict[tuple[str, ...], str] = {}
+
+    def text(self) -> ModelText:
+        self.include(self.model, 1)
+        self.leave_seen_alone()
+        if self.is_urdf:
+            self.name_urdf_files()
+        else:
+            self.name_mjcf_files()
+        lines = LineText.of(self.model, self.places)
+        return ModelText(self.model, self.is_urdf, lines, self.files)
+
+    def include(self, above: Element, depth: int) -> None:
+        """Put what is included in the place of what includes it."""
+        if depth > MOST_NESTED:
+            raise self.refused(f"has elements that are nested deeper than {MOST_NESTED}; make it flat", above)
+        found = list[Element]()
+        for element in above:
+            if element.tag == "include":
+                found += self.included_by(element, depth)
+            else:
+                self.include(element, depth + 1)
+                found.append(element)
+        above[:] = found
+
+    def included_by(self, element: Element, depth: int) -> list[Element]:
+        name = element.get("file") or ""
+        written_in = Path(self.places[element].source).parent
+        path = self.root.first([self.folder / name, written_in / name], name)
+        if path in self.included:
+            raise self.refused(f"includes {name!r} twice, or in itself; remove all but one", element)
+        self.included.add(path)
+        self.n_text += path.stat().st_size
+        if self.n_text > MAX_FILE_BYTES:
+            limit = f"{MAX_FILE_BYTES // 1024**2} MiB"
+            raise self.refused(f"makes the model larger than {limit}, the size limit; put meshes into files", element)
+        holder = parsed(path, str(path), self.places)
+        self.include(holder, depth + 1)
+        return list(holder)
+
+    def leave_seen_alone(self) -> None:
+        left = SEEN_ALONE[self.model.tag]
+        for element in self.model.iter():
+            if element.tag.startswith("xacro:"):
+                raise self.refused(XACRO, element)
+            element[:] = [child for child in element if child.tag not in left]
+            for key in SEEN_ALONE_ATTRIBUTES:
+                element.attrib.pop(key, None)
+
+    def name_mjcf_files(self) -> None:
+        compilers = list(self.model.iter("compiler"))
+        folder, strips = self.folder / self.mesh_folder(compilers), self.strips(compilers, default=False)
+        for element in self.model.iter():
+            name = element.get("file")
+            if element.tag == "model" and name is not None:
+                raise self.refused(ATTACHED.format(name), element)
+            if name is None:
+                continue
+            path = self.root.first([folder / (Path(name).name if strips else name)], name)
+            if element.tag in ("mesh", "hfield") and element.get("name") is None:
+                element.set("name", Path(name).stem)
+            element.set("file", self.file(path, name, element))
+
+    def name_urdf_files(self) -> None:
+        compilers = list(self.model.iter("compiler"))
+        folder, strips = self.folder / self.mesh_folder(compilers), self.strips(compilers, default=True)
+        for element in self.model.iter("mesh"):
+            name = element.get("filename")
+            if name is None:
+                continue
+            places = [*self.root.places(name), folder / (Path(name).name if strips else name)]
+            path = self.root.first(places, name)
+            element.set("filename", self.file(path, name, element, element.get("scale") or ""))
+
+    def mesh_folder(self, compilers: Sequence[Element]) -> str:
+        """Return the folder of meshes; what says so is taken away, as names are ours after that."""
+        found = ""
+        for element in compilers:
+            for key in FOLDERS:
+                name = element.attrib.pop(key, None)
+                if name is not None:
+                    self.root.inside(self.folder / name, name)
+                    found = found if key == "texturedir" else name
+        return found
+
+    def strips(self, compilers: Sequence[Element], *, default: bool) -> bool:
+        """Whether names lose their folders."""
+        found = default
+        for element in compilers:
+            found = element.attrib.pop("strippath", str(found)).lower() == "true"
+        return found
+
+    def file(self, path: Path, name: str, element: Element, *more: str) -> str:
+        """Return the name that a file has for the compiler."""
+        suffix = path.suffix.lower()
+        if element.tag == "mesh" and suffix not in MESH_SUFFIXES:
+            kind = suffix or "a file without suffix"
+            raise self.refused(f"names {name!r}, and MuJoCo reads no {kind}; convert it to STL or OBJ", element)
+        key = (str(path), *more)
+        if key not in self.names:
+            self.count(path)
+            self.names[key] = f"file{len(self.names) + 1}{suffix}"
+            self.files[self.names[key]] = str(path)
+        return self.names[key]
+
+    def count(self, path: Path) -> None:
+        self.n_bytes += path.stat().st_size
+        if self.n_bytes > MAX_MESH_BYTES:
+            message = f"names files of more than {MAX_MESH_BYTES // 1024**2} MiB; simplify the meshes"
+            raise SceneFileError([FileProblem((), message, self.source)])
+
+    def refused(self, message: str, element: Element) -> SceneFileError:
+        return SceneFileError([FileProblem((), message, *self.places[element])])

@@ -10,3 +10,5 @@ PAST_FACE = 1e-11
 """Fraction of a part's size. Holes go on so far beyond their ends."""
 ROUNDING_OF_MEASURES = 1e-7
 """Fraction of a volume, a moment or a size. What differs by less is the same, after the sums of two programs."""
+SAME_AXES = 1e-7
+"""Fraction of the greatest. Half axes of an ellipsoid that differ by less are those of a ball."""

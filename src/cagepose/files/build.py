@@ -85,6 +85,7 @@ def build_scene(model: SceneModel, table: PointsTable | None, folder: Path = CUR
             Adjustable(name, entry.key, entry.range[0], entry.range[1])
             for name, entry in (model.adjustable or {}).items()
         ],
+        left_out=model.left_out or (),
     )
     if unknown := unknown_shapes(scene):
         raise SceneError(unknown)  # here, where each has its line in the file

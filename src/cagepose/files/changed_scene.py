@@ -6,14 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
 
 from cagepose.errors import Problem, SceneError
-from cagepose.files.build import build_scene
 from cagepose.files.key_path import Path, parse_key_path, resolved, set_value, value_at
-from cagepose.files.messages import schema_findings
+from cagepose.files.scene_data import scene_of
 from cagepose.files.scene_document import scene_document
-from cagepose.files.schema import SceneModel
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 
@@ -48,11 +45,7 @@ def changed_scene(scene: Scene, changes: Mapping[str, object]) -> Scene:
             problems.append(Problem((), str(error)))
     if problems:
         raise SceneError(problems)
-    try:
-        model = SceneModel.model_validate(data)
-    except ValidationError as error:
-        raise SceneError([finding.problem for finding in schema_findings(error, data)]) from None
-    return build_scene(model, None).scene
+    return scene_of(data)
 
 
 def _by_index(scene: Scene, data: dict[str, Any], path: Path) -> Path:

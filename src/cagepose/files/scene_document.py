@@ -100,6 +100,8 @@ class SceneWriter:
             found["adjustable"] = {
                 entry.name: {"key": entry.key, "range": [entry.low, entry.high]} for entry in scene.adjustable
             }
+        if scene.left_out:
+            found["left_out"] = list(scene.left_out)
         return found
 
     def object(self, held: Object) -> dict[str, Any]:

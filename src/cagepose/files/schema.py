@@ -262,6 +262,11 @@ class SceneModel(Mapping):
     )
     tolerances: TolerancesModel | None = Field(None, description="Left out: the defaults.")
     adjustable: dict[Name, AdjustableModel] | None = Field(None, description="Named numbers for sliders and studies.")
+    left_out: Annotated[list[Name], Field(min_length=1)] | None = Field(
+        None,
+        description="Names of what the scene's source has and the scene has not; each run warns of them.",
+        examples=[["terrain"]],
+    )
 
 
 def scene_json_schema() -> dict[str, Any]:

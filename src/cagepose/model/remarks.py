@@ -33,6 +33,7 @@ EARTH_M_S2 = 9.81
 
 def remarks(scene: Scene) -> Iterator[str]:
     """Yield what a scene's author should look at once more."""
+    yield from _left_out(scene)
     yield from _friction(scene)
     yield from _pieces(scene)
     yield from _center(scene)
@@ -44,6 +45,14 @@ def remarks(scene: Scene) -> Iterator[str]:
         yield (
             f"the scene is {millimetres(scene.size_m)} across; check the unit (units.length of a file, which is mm if"
             " left out; metres in Python)"
+        )
+
+
+def _left_out(scene: Scene) -> Iterator[str]:
+    if scene.left_out:
+        yield (
+            f"the source of this scene has {few(scene.left_out)}, too, which is left out here: where it would touch the"
+            " object, nothing holds that is shown"
         )
 
 

@@ -9,7 +9,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from cagepose.errors import Key, key_path
+from cagepose.errors import Key, Problem, key_path
 from cagepose.kernels.boundary.geometry import Geometry, empty_placement, overlap_at
 from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.collision.boxes import BoxesAndPoints
@@ -42,6 +42,19 @@ FARTHEST_START = 1e4
 """In sizes of the scene. The rounding of a position 1e4 sizes away is about 2e-12 of the size, near the resolution."""
 ASKEW = np.sqrt(np.array([1.0, 2.0, 3.0]) / 6.0)
 """A unit vector along which no two points of a grid lie at the same place."""
+
+
+@dataclass(frozen=True)
+class StartsInside(Problem):
+    """An element of the cage and the object start in each other.
+
+    Attributes
+    ----------
+    depth_m
+        How deep, at least, metres.
+    """
+
+    depth_m: float
 
 
 @dataclass(frozen=True)
@@ -81,6 +94,8 @@ class Scene:
         How to run it; None: the default.
     tolerances
         What counts as touching and as grazing.
+    left_out
+        Names of what the scene's source has and the scene has not: each run warns of them.
     geometry
         The boundaries of object and cage, as the kernels take them.
     boxes
@@ -104,6 +119,7 @@ class Scene:
     metric: Metric | None
     tolerances: Tolerances
     adjustable: tuple[Adjustable, ...]
+    left_out: tuple[str, ...]
     geometry: Geometry
     boxes: BoxesAndPoints
     open_seams: tuple[tuple[str, str], ...]
@@ -123,6 +139,7 @@ class Scene:
         metric: Metric | None = None,
         tolerances: Tolerances | None = None,
         adjustable: Iterable[Adjustable] = (),
+        left_out: Iterable[str] = (),
     ) -> None:
         """
         Raises
@@ -141,6 +158,7 @@ class Scene:
         check_kind(tolerances, Tolerances, ("tolerances",), problems)
         check_text(name, ("name",), problems)
         adjustable = check_kinds(adjustable, Adjustable, "adjustable", problems)
+        left_out = check_kinds(left_out, str, "left_out", problems)
         friction_of = {} if friction_of is None else friction_of
         check_mapping(friction_of, ("friction", "of"), problems)
         if method is not None:
@@ -183,6 +201,7 @@ class Scene:
             ("metric", metric),
             ("tolerances", tolerances),
             ("adjustable", adjustable),
+            ("left_out", left_out),
             ("geometry", geometry),
             ("boxes", boxes),
             ("open_seams", tuple((str(named[one].name), str(named[other].name)) for one, other in seams.open_pairs)),
@@ -245,6 +264,7 @@ class Scene:
             metric=changed.metric if metric is None else metric,
             tolerances=changed.tolerances if tolerances is None else tolerances,
             adjustable=changed.adjustable,
+            left_out=changed.left_out,
         )
 
     @property
@@ -361,11 +381,11 @@ def _check_shapes_apart(held: Object, cage: Cage, geometry: Geometry, problems: 
     part = key_path(("object", *place_of(held.part_paths[one])))
     is_point = other < len(cage.names)
     what, remedy = ("", "move the point") if is_point else (f"{cage.element_names[other]} ", "move it")
-    problems.add(
-        ("cage", *cage.element_paths[other]),
+    message = (
         f"{what}starts {millimetres(depth_m)} inside {part} ({held.element_names[one]}); {remedy} out or move the"
-        " object's start pose",
+        " object's start pose"
     )
+    problems.problems.append(StartsInside(("cage", *cage.element_paths[other]), message, depth_m))
 
 
 def _solid_of(holes: Sequence[Hole], names: Sequence[str], which: int) -> int:

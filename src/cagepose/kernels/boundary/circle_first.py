@@ -212,15 +212,18 @@ def first_touch_of_curved(
                 if kept[at].is_held:
                     continue
                 depth = kept[at].depth_m
+                # what goes through the zone in which it touches, and does not count there, may meet just behind it
+                rate = abs(dot(met.normal, velocity_at(motion, met.place)))
+                across = touch_m * closing.speed / rate if rate > 0.0 else math.inf
                 if kept[at].is_grazing:
                     if -depth <= met.gap <= touch_m:
+                        least = min(least, across)
                         continue
                     n_kept, at = dropped(kept, n_kept, at), -1
                 elif met.gap > touch_m and (met.gap > depth or depth == math.inf):
                     n_kept, depth = dropped(kept, n_kept, at), 0.0
                 elif depth == math.inf:
-                    if abs(met.gap) > touch_m or kept[at].is_deep:
-                        least = min(least, max(abs(met.gap), touch_m))
+                    least = min(least, abs(met.gap) if abs(met.gap) > touch_m else across)
                     continue
             gap = met.gap + depth
             # Where places are kept, all of a circle may come on at one moment: the nearest place is a new one then.
@@ -240,7 +243,7 @@ def first_touch_of_curved(
                 if at < 0 and abs(met.gap) <= touch_m and n_kept < len(kept):  # they may graze so for long
                     row = kept[n_kept]
                     row.angle, row.other_angle, row.depth_m = place.angle, place.other_angle, touch_m
-                    row.is_held, row.is_grazing, row.is_deep = False, True, False
+                    row.is_held, row.is_grazing = False, True
                     n_kept += 1
                 is_past = True
                 place_after(a, i, motion, amount, moved)
@@ -306,6 +309,5 @@ def dropped(kept: Rows[Kept], n_kept: int, at: int) -> int:
     """Drop a place from those that touched; return how many are left."""
     last = kept[n_kept - 1]
     kept[at].angle, kept[at].other_angle = last.angle, last.other_angle
-    kept[at].depth_m, kept[at].is_held = last.depth_m, last.is_held
-    kept[at].is_grazing, kept[at].is_deep = last.is_grazing, last.is_deep
+    kept[at].depth_m, kept[at].is_held, kept[at].is_grazing = last.depth_m, last.is_held, last.is_grazing
     return n_kept - 1

@@ -412,7 +412,6 @@ def first_of_curved(
             row = meetings.kept[n_kept]
             row.angle, row.other_angle, row.is_held = place.angle, place.other_angle, is_held
             row.depth_m, row.is_grazing = math.inf if (is_passed or is_deep) and not is_grazing else depth, is_grazing
-            row.is_deep = is_deep and not is_passed
             n_kept += 1
     exact, reach_m = tilt_of(search, one, other), reach_of(search)
     places, waiting, kept = meetings.places, meetings.waiting, meetings.kept

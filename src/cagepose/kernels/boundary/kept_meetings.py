@@ -26,7 +26,7 @@ def hold_places(i: int, j: int, meetings: Meetings) -> int:
         if row.is_kept and row.feature == i and row.cage_feature == j and n_kept < len(meetings.kept):
             kept = meetings.kept[n_kept]
             kept.angle, kept.other_angle, kept.depth_m, kept.is_held = row.angle, 0.0, math.inf, True
-            kept.is_grazing = kept.is_deep = False
+            kept.is_grazing = False
             n_kept += 1
     return n_kept
 

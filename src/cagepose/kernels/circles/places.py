@@ -78,8 +78,6 @@ class Kept:
     is_grazing
         Whether the motion goes along it, or they touch there without reaching: it counts as soon as they do not touch
         any more, be it that they are deeper in each other.
-    is_deep
-        Whether they are deep in each other there without reaching: they will be apart, and may meet soon after.
     """
 
     angle: float
@@ -87,7 +85,6 @@ class Kept:
     depth_m: float
     is_held: bool
     is_grazing: bool
-    is_deep: bool
 
 
 class CirclePoint(NamedTuple):
