@@ -48,8 +48,9 @@ def scene(held, cage, pose: Pose, friction: float = 0.0) -> Scene:
 
 
 def test_features_are_those_of_the_surfaces():
-    """A round bar of 128 triangles has two circles, two faces and one side; a groove has a side with borders."""
-    bar = prism([Corner((0.003, 0.0), (0.0, 0.0)), Corner((-0.003, 0.0), (0.0, 0.0))], 0.02)
+    """A round bar of many triangles has two circles, two faces and one side; a groove has a side with borders."""
+    places = [(0.003 * math.cos(angle), 0.003 * math.sin(angle)) for angle in (0.0, 2.0, 4.0)]
+    bar = prism([Corner(place, (0.0, 0.0)) for place in places], 0.02)
     kinds = sorted(boundary_of([bar], TOUCH_M).features["kind"].tolist())
     assert kinds == [LINE, FACE, FACE, CIRCLE, CIRCLE]
     found = boundary_of([cradle()], TOUCH_M)
