@@ -91,6 +91,19 @@ def test_the_command_joins_files_at_places(tmp_path, monkeypatch, capsys):
     assert Path("mine.html").read_text() == "<p>mine"
 
 
+def test_a_page_about_a_model_has_its_notes(tmp_path, monkeypatch):
+    pytest.importorskip("mujoco")
+    monkeypatch.chdir(tmp_path)
+    body = '<body><freejoint/><geom type="sphere" size="0.05"/></body>'
+    Path("robot.xml").write_text(
+        f'<mujoco><worldbody><geom type="plane" size="1 1 1" pos="0 0 -1"/>{body}</worldbody></mujoco>'
+    )
+    assert main(["import", "robot.xml", "-o", "scene.yaml", "--report", "page.html"]) == 0
+    page = Path("page.html").read_text()
+    assert "what they measured there is not compared" in page
+    assert "is a plane; here, a box" in page
+
+
 def test_where_a_file_is_placed_is_its_name_and_numbers():
     assert PlacedFile.of("pin.step") == PlacedFile("pin.step")
     assert PlacedFile.of("a@b 2.step").file == "a@b 2.step"
