@@ -122,6 +122,8 @@ def test_a_file_alone_is_told_how_to_be_joined(tmp_path, monkeypatch, capsys):
     pin(tmp_path)
     assert main(["import", "pin.step", "-o", "scene.yaml"]) == 2
     assert "cagepose import --object pin.step --cage FILE -o scene.yaml" in capsys.readouterr().err
+    assert main(["import", "pin.step", "--object", "pin.step", "--cage", "plate.step", "-o", "scene.yaml"]) == 2
+    assert "no solid 'pin.step'; if that is a file, join both: cagepose import --object FILE" in capsys.readouterr().err
     assert main(["import", "-o", "scene.yaml"]) == 2
     assert "import needs a FILE, or --object FILE and --cage FILE, to join files" in capsys.readouterr().err
     assert main(["import", "--object", "pin.step", "--cage", "robot.xml", "-o", "scene.yaml"]) == 2
