@@ -91,6 +91,19 @@ def test_the_command_joins_files_at_places(tmp_path, monkeypatch, capsys):
     assert Path("mine.html").read_text() == "<p>mine"
 
 
+def test_a_page_about_a_model_has_its_notes(tmp_path, monkeypatch):
+    pytest.importorskip("mujoco")
+    monkeypatch.chdir(tmp_path)
+    body = '<body><freejoint/><geom type="sphere" size="0.05"/></body>'
+    Path("robot.xml").write_text(
+        f'<mujoco><worldbody><geom type="plane" size="1 1 1" pos="0 0 -1"/>{body}</worldbody></mujoco>'
+    )
+    assert main(["import", "robot.xml", "-o", "scene.yaml", "--report", "page.html"]) == 0
+    page = Path("page.html").read_text()
+    assert "what they measured there is not compared" in page
+    assert "is a plane; here, a box" in page
+
+
 def test_where_a_file_is_placed_is_its_name_and_numbers():
     assert PlacedFile.of("pin.step") == PlacedFile("pin.step")
     assert PlacedFile.of("a@b 2.step").file == "a@b 2.step"
@@ -109,6 +122,8 @@ def test_a_file_alone_is_told_how_to_be_joined(tmp_path, monkeypatch, capsys):
     pin(tmp_path)
     assert main(["import", "pin.step", "-o", "scene.yaml"]) == 2
     assert "cagepose import --object pin.step --cage FILE -o scene.yaml" in capsys.readouterr().err
+    assert main(["import", "pin.step", "--object", "pin.step", "--cage", "plate.step", "-o", "scene.yaml"]) == 2
+    assert "no solid 'pin.step'; if that is a file, join both: cagepose import --object FILE" in capsys.readouterr().err
     assert main(["import", "-o", "scene.yaml"]) == 2
     assert "import needs a FILE, or --object FILE and --cage FILE, to join files" in capsys.readouterr().err
     assert main(["import", "--object", "pin.step", "--cage", "robot.xml", "-o", "scene.yaml"]) == 2

@@ -131,6 +131,8 @@ def test_a_unit_beside_step_and_a_solid_beside_a_mesh_are_errors(scene, tmp_path
         scene("file: pin.stl, solid: pin")
     with pytest.raises(SceneFileError, match=r"other\.stp is no file; check the name and the folder"):
         scene("file: other.stp")
+    with pytest.raises(SceneFileError, match=r"is not a file name; remove the unprintable character"):
+        scene('file: "pin\\0.stp"')
 
 
 @pytest.mark.usefixtures("in_this_process")

@@ -12,7 +12,7 @@ import numpy as np
 from cagepose.errors import FileProblem, SceneError, SceneFileError
 from cagepose.exchange.imported_part import ImportedPart
 from cagepose.exchange.solids_note import SHOWN, read_solids_note
-from cagepose.exchange.source_solids import source_solids
+from cagepose.exchange.source_solids import SOLIDS, source_solids
 from cagepose.exchange.tolerances import SAME_END
 from cagepose.files.meshes.mesh_file import refused
 from cagepose.files.progress import tell
@@ -26,6 +26,7 @@ Data = dict[str, Any]
 
 METRES = SceneWriter("m")
 WEIGHT = [{"name": "weight", "gravity": [0.0, 0.0, -9.81]}]
+JOIN = "cagepose import --object FILE --cage FILE -o scene.yaml"
 ALONE = "has no solid but the object; name the files of its cage: cagepose import --object {} --cage FILE -o scene.yaml"
 
 
@@ -120,6 +121,8 @@ def _chosen(
 
     def of(wanted: str) -> list[str]:
         found = [name for name in names if is_of(name, wanted)]
+        if not found and Path(wanted).suffix.lower() in SOLIDS:
+            raise refused(f"has no solid {wanted!r}; if that is a file, join both: {JOIN}")
         if not found:
             raise refused(f"has no solid {wanted!r}; its solids: {few(names, 12) or 'none'}")
         return found

@@ -46,6 +46,8 @@ def read_step_shapes(path: Path, solid: str | None, name: str, *, fillets: bool 
     MissingExtraError
         What reads it is not installed.
     """
+    if "\0" in os.fspath(path):
+        raise refused("is not a file name; remove the unprintable character")
     try:
         found = path.stat()
         return _shapes(os.fspath(path), found.st_mtime_ns, found.st_size, solid, name, fillets)
