@@ -16,7 +16,6 @@ from cagepose.exchange.stl import MM_PER_M
 from cagepose.exchange.tolerances import SAME_END, SAME_VOLUME
 from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.manifolds import Triangles
-from cagepose.files.meshes.mended import mended
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
 from cagepose.files.meshes.surface_distance import farthest_from
 from cagepose.files.progress import tell
@@ -173,10 +172,9 @@ def _shapes(name: str, solid: Data, frame: Pose, notes: list[str]) -> list[Shape
         if "volume" in solid and (off := off_volume(solid)) > 0.0:
             found_off = f"{name!r} is {off:.1%} of its volume off as Open CASCADE makes triangles of it"
             raise mesh_file.refused(f"{found_off}; repair it, or export it as STL")
-        mesh, moved = mended(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])))
-        mesh_file.checked(mesh, f"{name!r} ")
-        if moved > 0.0:
-            notes.append(f"{name!r} has cracks of up to {moved:.2g} mm, which are closed here")
+        given = Triangles(np.array(solid["vertices"]), np.array(solid["faces"]))
+        mesh, mended_notes = mesh_file.sound(given, name, "mm", f"{name!r} ")
+        notes += mended_notes
         if "sharp" in solid:
             solid, mesh = _sharp(solid, mesh, name, notes)
         found = mesh_shapes(mesh, name, "mm")
@@ -192,8 +190,8 @@ def _shapes(name: str, solid: Data, frame: Pose, notes: list[str]) -> list[Shape
 def _sharp(solid: Data, mesh: Triangles, name: str, notes: list[str]) -> tuple[Data, Triangles]:
     """Return a solid without its hollow roundings, and its surface; with them, where they are a great part of it."""
     try:
-        sharp = Triangles(np.array(solid["sharp"]["vertices"]), np.array(solid["sharp"]["faces"]))
-        mesh_file.checked(sharp, f"{name!r} ")
+        given = Triangles(np.array(solid["sharp"]["vertices"]), np.array(solid["sharp"]["faces"]))
+        sharp = mesh_file.checked(given, f"{name!r} ")
     except SceneError:  # Open CASCADE left it open or crossing itself
         return solid, mesh
     off = max(farthest_from(mesh, sharp), farthest_from(sharp, mesh))
