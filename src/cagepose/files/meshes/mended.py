@@ -15,8 +15,8 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.sides import open_sides, starts_and_ends
 from cagepose.model.wording import counted
 
-STEP = 4.0
-"""Cracks are looked for that are so many times wider each time."""
+WIDTHS = tuple(np.geomspace(ROUNDING_OF_MESH, WIDEST_CRACK, 7).tolist())
+"""Fractions of the size: cracks that are looked for, each some four times as wide as the one before."""
 
 
 class Mended(NamedTuple):
@@ -54,8 +54,7 @@ def mended(mesh: Triangles) -> Mended:
         return Mended(single, 0.0, done, single)
     nearest = single
     for may_stray in (False, True):
-        width = 0.0
-        while width <= WIDEST_CRACK:
+        for width in (0.0, *WIDTHS):
             found, moved = without_cracks(single, width * mesh.size) if width > 0.0 else (single, 0.0)
             found, _ = without_doubled(found)  # cracks that are closed bring triangles together
             found, turned = turned_alike(found)
@@ -68,7 +67,6 @@ def mended(mesh: Triangles) -> Mended:
                 return Mended(_of_corners(found), moved, done, found)
             if len(found.faces) > 0 and len(open_sides(found.faces)) < len(open_sides(nearest.faces)):
                 nearest = found
-            width = STEP * width or ROUNDING_OF_MESH
     return Mended(mesh, 0.0, (), nearest)
 
 
