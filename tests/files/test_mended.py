@@ -48,7 +48,7 @@ def test_corners_in_the_middle_of_a_side_divide_it(shares):
     cube = cube_with_corners_on_an_edge(shares)
     assert len(open_sides(cube.faces)) > 0
     found = mended(cube)
-    assert found.moved == 0.0
+    assert found.moved < 1e-14
     assert len(open_sides(found.mesh.faces)) == 0
     assert found.mesh.body().volume() == pytest.approx(1000.0, rel=1e-12)
 
@@ -94,5 +94,5 @@ def test_files_with_cracks_are_bodies_and_say_so(tmp_path):
 @pytest.mark.usefixtures("in_this_process")
 def test_what_is_open_is_refused(tmp_path):
     ring = trimesh.creation.torus(10.0, 3.0, major_sections=24, minor_sections=12)
-    with pytest.raises(SceneError, match="is not closed: triangles are missing"):
+    with pytest.raises(SceneError, match=r"is open at \("):
         read_mesh(written(tmp_path, soup(np.array(ring.triangles)[1:])), "mm", "mm", "ring")

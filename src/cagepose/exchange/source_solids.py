@@ -11,7 +11,6 @@ from cagepose.exchange.imported_part import ImportedPart, Measures, measures_of_
 from cagepose.exchange.stl import MM_PER_M
 from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.manifolds import Triangles
-from cagepose.files.meshes.mended import mended
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
 from cagepose.files.step import step_file
 from cagepose.files.step.solid_shapes import rounded, solid_shapes
@@ -86,10 +85,9 @@ class SourceSolid(NamedTuple):
         )
 
     def _mesh_shapes(self, name: str) -> MeshShapes:
-        mesh, moved = mended(self.surface())
-        found = mesh_shapes(mesh_file.checked(mesh, f"{name!r} "), name, "mm")
-        closed = (f"{name!r} has cracks of up to {moved:.2g} mm, which are closed here",) if moved > 0.0 else ()
-        return found._replace(notes=(*closed, *found.notes))
+        mesh, said = mesh_file.sound(self.surface(), name, "mm", f"{name!r} ")
+        found = mesh_shapes(mesh, name, "mm")
+        return found._replace(notes=(*said, *found.notes))
 
 
 def source_solids(path: Path, notes: list[str], *, is_ours: bool = False, fillets: bool = True) -> list[SourceSolid]:

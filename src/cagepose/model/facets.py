@@ -183,8 +183,8 @@ def _check_closed(vertices: FloatArray, triangles: IntArray, problems: ProblemLi
 def _pairs(points: FloatArray, corners: FloatArray, within_m: float) -> tuple[IntArray, IntArray]:
     """Return which points are near the boxes around which triangles."""
     low, high = corners.min(axis=1) - within_m, corners.max(axis=1) + within_m
-    pairs = near_pairs(np.concatenate([points, low]), np.concatenate([points, high]))
-    pairs = pairs[(pairs[:, 0] < len(points)) & (pairs[:, 1] >= len(points))].astype(np.int64)
+    boxes = np.concatenate([points, low]), np.concatenate([points, high])
+    pairs = near_pairs(*boxes, between=len(points)).astype(np.int64)
     return pairs[:, 0], pairs[:, 1] - len(points)
 
 

@@ -18,9 +18,9 @@ FEW = 32
 """So many things are all compared with each other: quicker than to halve them."""
 
 
-def near_pairs(low: FloatArray, high: FloatArray, most: float = math.inf) -> IntArray:
+def near_pairs(low: FloatArray, high: FloatArray, most: float = math.inf, *, between: int | None = None) -> IntArray:
     """Return the pairs of boxes along the axes that overlap or touch, by their indices. The search stops once it has
-    more than ``most``.
+    more than ``most``; ``between``: one of each pair is among so many first ones, the other is not.
 
     Parameters
     ----------
@@ -34,6 +34,8 @@ def near_pairs(low: FloatArray, high: FloatArray, most: float = math.inf) -> Int
     """
     found = [np.zeros((0, 2), np.intp)]
     todo: list[tuple[IntArray, IntArray | None]] = [(np.arange(len(low)), None)]
+    if between is not None:
+        todo = [(np.arange(between), np.arange(between, len(low)))] if 0 < between < len(low) else []
     n_found = 0
     while todo and n_found <= most:
         one, other = todo.pop()
@@ -50,6 +52,8 @@ def near_pairs(low: FloatArray, high: FloatArray, most: float = math.inf) -> Int
         if len(one) == 0:
             continue
         other = other[_meet(low[other], high[other], low[one].min(axis=0), high[one].max(axis=0))]
+        if len(other) == 0:
+            continue
         if len(one) * len(other) <= FEW * FEW:
             found.append(_compared(low, high, one, other))
             n_found += len(found[-1])

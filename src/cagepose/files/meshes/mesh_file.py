@@ -5,17 +5,20 @@ from __future__ import annotations
 import os
 from functools import lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from cagepose.errors import Problem, SceneError
-from cagepose.files.meshes.crossings import crosses_itself
+from cagepose.files.meshes.crossings import deepest_crossing
 from cagepose.files.meshes.kept_facets import keep, kept
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
-from cagepose.files.meshes.mended import mended
+from cagepose.files.meshes.mended import mended, place, where_open
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes, tidied
-from cagepose.files.meshes.run_trimesh import is_text, surfaces
-from cagepose.files.meshes.tolerances import FLAT_OF_SIZE
+from cagepose.files.meshes.odd_facets import is_closed
+from cagepose.files.meshes.run_trimesh import STL_HEADER_BYTES, STL_TRIANGLE, is_text, surfaces
+from cagepose.files.meshes.shells import as_bodies
+from cagepose.files.meshes.tolerances import DEEPEST_CROSSING, FLAT_OF_SIZE, ROUNDING_OF_MESH
 from cagepose.files.progress import tell
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.shapes import Shape
@@ -23,10 +26,10 @@ from cagepose.model.shapes import Shape
 SUFFIXES = (".stl", ".obj", ".ply", ".glb")
 UNIT_OF_GLB: LengthUnit = "m"
 """By its standard; the other formats do not say theirs."""
-MAX_MESH_BYTES = 32 * 1024 * 1024
-"""One file has at most so many: 650,000 triangles of a binary STL."""
-STL_HEADER_BYTES, STL_TRIANGLE_BYTES = 84, 50
-"""The parts of a binary STL file. The last four bytes of its header are the number of triangles."""
+MAX_MESH_BYTES = 128 * 1024 * 1024
+"""One file has at most so many: 430,000 triangles of a text STL with all digits."""
+MOST_TRIANGLES = 1_000_000
+"""More take more than 2 GB to run with."""
 STL_LAST_LINE = 1024
 """Bytes at the end of a text STL file, which ends with a name."""
 LONGEST_SIZE, SHORTEST_SIZE = 1e9, 1e-9
@@ -75,11 +78,9 @@ def _shapes(file: str, _changed: int, _n_bytes: int, unit: LengthUnit, name: str
     path = Path(file)
     found = kept(path, name, unit)
     if found is None:
-        mesh, moved = mended(read_solids(path, split=False)[""])
-        found = mesh_shapes(checked(mesh, ""), name, unit)
-        if moved > 0.0:
-            closed = f"{name!r} has cracks of up to {moved:.2g} {unit}, which are closed here"
-            found = found._replace(notes=(closed, *found.notes))
+        mesh, notes = sound(read_solids(path, split=False)[""], name, unit)
+        found = mesh_shapes(mesh, name, unit)
+        found = found._replace(notes=(*notes, *found.notes))
         keep(path, found, unit)
     metres = float(to_metres(1.0, unit))
     return MeshShapes(tuple(scaled(shape, metres) for shape in found.shapes), metres * found.error, found.notes)
@@ -114,6 +115,8 @@ def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
         _check_whole(content)
     tell(f"{path.name}: read, {len(content) / 1024**2:.1f} MiB")
     found = surfaces(content, suffix, split=split)
+    if (n_triangles := sum(len(mesh.faces) for mesh in found.values())) > MOST_TRIANGLES:
+        raise refused(f"has {n_triangles:,} triangles, more than {MOST_TRIANGLES:,}; simplify it, or export it coarser")
     if not all(np.isfinite(mesh.vertices).all() for mesh in found.values()):
         raise refused("holds points that are no numbers; export it again")
     return found
@@ -126,19 +129,72 @@ def _check_whole(stl: bytes) -> None:
             raise refused("is truncated: its last line is no endsolid; copy or export it again")
         return
     n_triangles = int.from_bytes(stl[STL_HEADER_BYTES - 4 : STL_HEADER_BYTES], "little")
-    expected = STL_HEADER_BYTES + STL_TRIANGLE_BYTES * n_triangles
+    expected = STL_HEADER_BYTES + STL_TRIANGLE.itemsize * n_triangles
     if len(stl) < expected:
         raise refused(f"is truncated: {expected:,} bytes expected, {len(stl):,} found; copy or export it again")
 
 
-def checked(mesh: Triangles, which: str) -> Triangles:
-    """Return a surface that encloses a body; ``which`` begins the messages about others.
+class Sound(NamedTuple):
+    """A closed surface that faces outwards and does not cross itself, and what was done to make it so, in sentences."""
+
+    mesh: Triangles
+    notes: tuple[str, ...]
+
+
+def sound(mesh: Triangles, name: str, unit: str, which: str = "") -> Sound:
+    """Return the surface of a body, mended where that takes no more than a distance that is told.
+
+    Parameters
+    ----------
+    mesh
+        Triangles of a file.
+    name
+        Of the body, for the notes.
+    unit
+        Of its lengths, for what is said.
+    which
+        Begins the messages.
 
     Raises
     ------
     SceneError
-        It is empty, huge, tiny, far away, flat, open, inside out, or crosses itself.
+        It is empty, huge, tiny, far away, flat, open, or crosses itself; the message says where.
     """
+    _check_size(mesh, which)
+    found = mended(mesh)
+    if not is_closed(found.mesh):
+        raise refused(f"{which}{where_open(found.nearest, unit)}; close it in CAD, or repair the mesh there")
+    whole = found.mesh.body()
+    if whole.status() != manifold3d().Error.NoError:
+        raise refused(f"{which}is no surface of a body ({whole.status().name}); repair it, or export it as a solid")
+    tell(f"{which}{len(mesh.faces):,} triangles: searched for crossings")
+    shells = whole.decompose()
+    notes = []
+    for shell in shells:
+        crossing = deepest_crossing(found.mesh if len(shells) == 1 else Triangles.of(shell))
+        if crossing is not None:
+            depth, where = f"{crossing.depth:.2g} {unit}", f"at {place(crossing.place, mesh.size)} {unit}"
+            if crossing.depth > DEEPEST_CROSSING * mesh.size:
+                times = f", in {crossing.n_crossings:,} pairs of triangles" if crossing.n_crossings > 1 else ""
+                remedy = "draw it as bodies in CAD and take their union, or repair the mesh there"
+                raise refused(f"{which}crosses itself by {depth} or more {where}{times}; {remedy}")
+            notes.append(f"{name!r} runs through itself by up to {depth}, as {where}, and is left so")
+    try:
+        bodies = as_bodies(found.mesh, shells)
+    except ValueError as error:
+        raise refused(f"{which}{error}") from None
+    notes += [f"{name!r}: {done}" for done in (*found.done, *bodies.done)]
+    if found.moved > ROUNDING_OF_MESH * mesh.size:
+        notes.insert(0, f"{name!r} has cracks of up to {found.moved:.2g} {unit}, which are closed here")
+    return Sound(bodies.mesh, tuple(notes))
+
+
+def checked(mesh: Triangles, which: str) -> Triangles:
+    """Return the surface of a body, see `sound`, whose notes nobody reads."""
+    return sound(mesh, "", "", which).mesh
+
+
+def _check_size(mesh: Triangles, which: str) -> None:
     if len(mesh.faces) == 0:
         raise refused(f"{which}holds no triangles with an area; export it again")
     farthest = float(np.abs(mesh.vertices).max())
@@ -151,27 +207,9 @@ def checked(mesh: Triangles, which: str) -> Triangles:
         raise refused(f"{which}is {size:.2g} long, less than {SHORTEST_SIZE:g}; check its unit")
     if farthest > MOST_AWAY * size > 0.0:
         raise refused(f"{which}is {farthest / size:.2g} times its size away from the origin; move both bodies there")
-    centered = Triangles((mesh.vertices - mesh.vertices.mean(axis=0)) / (size or 1.0), mesh.faces)
-    spread = np.linalg.svd(centered.vertices, compute_uv=False)
+    spread = np.linalg.svd((mesh.vertices - mesh.vertices.mean(axis=0)) / (size or 1.0), compute_uv=False)
     if size == 0.0 or len(spread) < 3 or spread[2] <= FLAT_OF_SIZE * spread[0]:
         raise refused(f"{which}encloses no volume: its points lie in one plane; give it a thickness")
-    if not _is_closed(mesh) or centered.body().status() != manifold3d().Error.NoError:
-        raise refused(
-            f"{which}is not closed: triangles are missing or meet no neighbour; repair it, or export it as a solid"
-        )
-    if centered.body().volume() < 0.0:
-        raise refused(f"{which}is inside out: its triangles face inwards; flip them")
-    tell(f"{which}{len(mesh.faces):,} triangles: searched for crossings")
-    if crosses_itself(centered):
-        raise refused(f"{which}crosses itself; repair it, as by a union of its parts")
-    return mesh
-
-
-def _is_closed(mesh: Triangles) -> bool:
-    """Whether each side of a triangle is as often one the other way round: what is not can crash libraries."""
-    sides = np.stack([mesh.faces, np.roll(mesh.faces, -1, axis=1)], axis=2).reshape(-1, 2)
-    there, back = (np.sort(side @ (len(mesh.vertices), 1)) for side in (sides, sides[:, ::-1]))
-    return bool((there == back).all())
 
 
 def refused(message: str) -> SceneError:

@@ -6,14 +6,17 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.files.meshes.convex_shapes import FEWEST_SIDES
 from cagepose.files.meshes.edges import edges_of, reflex_edges
+from cagepose.files.meshes.joined import joined
 from cagepose.files.meshes.manifolds import Triangles, circle_through, manifold3d
 from cagepose.files.meshes.tolerances import DISTANCE_BEYOND, PARALLEL_SINE, ROUNDING_OF_MESH, SINGLE_PRECISION
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.pose import Pose, turn_from_z
+from cagepose.model.sides import IntArray
 
 COSINE_OF_END = 0.99
 """Cosine between the triangles of the wall and those of its flat ends, which is less than this."""
@@ -51,23 +54,23 @@ def _walls(mesh: Triangles) -> list[FloatArray]:
     """Return the corners of each wall: those of hollow edges that are parallel, equally long and in a ring."""
     allowed = ROUNDING_OF_MESH * mesh.size
     edges = reflex_edges(mesh, allowed).corners
-    # corners that sharp edges join: they lie on one end of a hole
-    links: dict[int, set[int]] = {}
     all_edges = edges_of(mesh)
     one_side, other_side = np.moveaxis(mesh.normals[all_edges.faces], 1, 0)
     # two holes are joined by edges within flat ends, which are not sharp
-    is_sharp = np.einsum("ij,ij->i", one_side, other_side) < COSINE_OF_END
-    for one, other in all_edges.corners[is_sharp].tolist():
-        links.setdefault(one, set()).add(other)
-        links.setdefault(other, set()).add(one)
-    edges = edges[np.isin(edges, all_edges.corners[is_sharp]).any(axis=1)]  # what is round all over has many others
+    sharp = all_edges.corners[np.einsum("ij,ij->i", one_side, other_side) < COSINE_OF_END]
+    slack = 3.0 * SINGLE_PRECISION * mesh.size
+    edges = edges[_in_rings(mesh.vertices, edges, sharp, slack)]
     if len(edges) < FEWEST_SIDES:
         return []
+    # corners that sharp edges join: they lie on one end of a hole
+    links: dict[int, set[int]] = {}
+    for one, other in sharp[np.isin(sharp, edges).all(axis=1)].tolist():
+        links.setdefault(one, set()).add(other)
+        links.setdefault(other, set()).add(one)
     # the longest edge that is left and those that are parallel and equally long
     spans = mesh.vertices[edges[:, 1]] - mesh.vertices[edges[:, 0]]
     lengths = np.linalg.norm(spans, axis=1)
     left, walls = np.ones(len(edges), bool), []
-    slack = 3.0 * SINGLE_PRECISION * mesh.size
     longest_first = np.argsort(-lengths)
     falling = -lengths[longest_first]
     for seed in longest_first.tolist():
@@ -96,6 +99,29 @@ def _walls(mesh: Triangles) -> list[FloatArray]:
         if len(ring) >= FEWEST_SIDES:
             walls.append(mesh.vertices[edges[of_ring]].reshape(-1, 3))
     return walls
+
+
+def _in_rings(vertices: FloatArray, edges: IntArray, sharp: IntArray, slack: float) -> NDArray[np.bool_]:
+    """Return which edges hang together with enough others that are parallel and equally long, from end to end by sharp
+    edges, that they may be a wall: what is wavy has 100,000 edges, and none of these.
+    """
+    corner, edge = edges.ravel(), np.repeat(np.arange(len(edges)), 2)
+    order = np.argsort(corner, kind="stable")
+    corner, edge = corner[order], edge[order]
+    begin, end = (np.searchsorted(corner, sharp, side) for side in ("left", "right"))
+    counts = end - begin
+    n_pairs = counts.prod(axis=1)
+    row = np.repeat(np.arange(len(sharp)), n_pairs)
+    k = np.arange(len(row)) - np.repeat(np.cumsum(n_pairs) - n_pairs, n_pairs)
+    one, other = edge[begin[row, 0] + k // counts[row, 1]], edge[begin[row, 1] + k % counts[row, 1]]
+    spans = vertices[edges[:, 1]] - vertices[edges[:, 0]]
+    lengths = np.linalg.norm(spans, axis=1)
+    across = np.linalg.norm(np.cross(spans[one], spans[other]), axis=1)
+    is_alike = np.abs(lengths[one] - lengths[other]) < 2.0 * slack
+    is_alike &= across <= 2.0 * PARALLEL_SINE * lengths[one] * lengths[other]
+    ring = joined(len(edges), np.stack([one[is_alike], other[is_alike]], axis=1))
+    found: NDArray[np.bool_] = np.bincount(ring, minlength=len(edges))[ring] >= FEWEST_SIDES
+    return found
 
 
 def _hole(body: Any, wall: FloatArray) -> RoundHole | None:

@@ -30,6 +30,8 @@ SINGLE_PRECISION = 1e-6
 with it."""
 WIDEST_CRACK = 1e-3
 """Fraction of a mesh's size. What is open by more is missing."""
+DEEPEST_CROSSING = 1e-4
+"""Fraction of a mesh's size. A surface that runs through itself by less does so by what programs for CAD round to."""
 FLAT_OF_SIZE = 1e-6
 """Fraction of a mesh's size. What is thinner is flat."""
 LEAST_SHARED = 1e-6

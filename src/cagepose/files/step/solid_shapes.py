@@ -9,7 +9,6 @@ import numpy as np
 from cagepose.errors import SceneError
 from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.manifolds import Triangles
-from cagepose.files.meshes.mended import mended
 from cagepose.files.meshes.mesh_shapes import MeshShapes, known_shapes, mesh_shapes
 from cagepose.files.meshes.surface_distance import farthest_from
 from cagepose.files.step.exact_facets import facets_on_surfaces
@@ -19,6 +18,7 @@ from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.shape_moments import shape_moments
 from cagepose.model.shapes import Capsule, Convex, Shape, Sphere
+from cagepose.model.sides import open_sides
 from cagepose.model.wording import counted
 
 Data = dict[str, Any]
@@ -54,16 +54,16 @@ def solid_shapes(name: str, solid: Data) -> MeshShapes:
     if (off := off_volume(solid)) > 0.0:
         found_off = f"{name!r} is {off:.1%} of its volume off as Open CASCADE makes triangles of it"
         raise mesh_file.refused(f"{found_off}; repair it, or export it as STL")
-    mesh, moved = mended(Triangles(np.array(solid["vertices"]), np.array(solid["faces"])))
-    mesh_file.checked(mesh, f"{name!r} ")
-    notes = [f"{name!r} has cracks of up to {moved:.2g} mm, which are closed here"] if moved > 0.0 else []
+    given = Triangles(np.array(solid["vertices"]), np.array(solid["faces"]))
+    mesh, said = mesh_file.sound(given, name, "mm", f"{name!r} ")
+    notes = [*said]
     lost = 0.0
     if "sharp" in solid:
         solid, mesh, lost = _sharp(solid, mesh, name, notes)
     known = known_shapes(mesh, name, "mm") if len(mesh.faces) <= MOST_RECOGNISED else None
     if known is not None and _is_exact(known, solid):
         return MeshShapes(known.shapes, lost, tuple(notes))
-    if moved == 0.0:
+    if len(open_sides(given.faces)) == 0:
         exact = facets_on_surfaces(solid, name)
         return MeshShapes((exact.shape,), max(lost, exact.error), (*notes, *exact.notes))
     found = known or mesh_shapes(mesh, name, "mm")
