@@ -63,7 +63,7 @@ def solid_shapes(name: str, solid: Data) -> MeshShapes:
     known = known_shapes(mesh, name, "mm") if len(mesh.faces) <= MOST_RECOGNISED else None
     if known is not None and _is_exact(known, solid):
         return MeshShapes(known.shapes, lost, tuple(notes))
-    if len(open_sides(given.faces)) == 0:
+    if len(open_sides(np.array(solid["faces"]))) == 0:
         exact = facets_on_surfaces(solid, name)
         return MeshShapes((exact.shape,), max(lost, exact.error), (*notes, *exact.notes))
     found = known or mesh_shapes(mesh, name, "mm")
