@@ -1,7 +1,7 @@
 """A model as MuJoCo's compiler may have it: `read_model_text`. What could do harm is refused before that sees it.
 
-All that it includes is in one text, and all meshes are files that were found, by names of ours. What is only seen is not
-in it, nor what moves or measures bodies, which older models have in words that MuJoCo no longer knows.
+All that it includes is in one text, and all meshes are files that were found, by names of ours. What is only seen is
+not in it, nor what moves or measures bodies, which older models have in words that MuJoCo no longer knows.
 """
 
 from __future__ import annotations
