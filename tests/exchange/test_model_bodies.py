@@ -7,12 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cagepose import SceneFileError, load_scene, run, save_scene
+from cagepose import Scene, SceneFileError, load_scene, run, save_scene
 from cagepose.cli.app import main
 from cagepose.exchange.compile_model import compiled
+from cagepose.exchange.export import exported
 from cagepose.exchange.imported import imported
 from cagepose.exchange.model_contacts import ModelContacts
 from cagepose.exchange.model_text import read_model_text
+from cagepose.files.record import from_record, record_of
 from exchange.robots import mjcf, written
 
 mujoco = pytest.importorskip("mujoco")
@@ -206,6 +208,22 @@ def test_what_the_object_is_deep_in_is_left_out_and_each_run_warns(tmp_path, cap
     ended = run(scene)
     assert (ended.verdict, ended.pose.position_m[2]) == ("rests", pytest.approx(0.02, abs=1e-9))
     assert any(warning in said for said in ended.warnings)
+
+
+def test_what_is_left_out_stays_said(tmp_path):
+    """In files, records, exports, and scenes with a changed number."""
+    source = written(tmp_path, cube_dot_xml=mjcf(BURIED.format(z=0.08)))
+    scene = imported(str(source)).scene.changed("object.mass", 2.0)
+    save_scene(scene, tmp_path / "cube.yaml")
+    exported_file = next(iter(exported(run(scene), "mjcf", "cube.xml").files.values()))
+    source.write_bytes(exported_file)
+    again = (
+        scene,
+        load_scene(tmp_path / "cube.yaml"),
+        from_record(Scene, record_of(scene)),
+        imported(str(source)).scene,
+    )
+    assert [one.left_out for one in again] == [("table",)] * 4
 
 
 def test_an_object_inside_all_of_its_cage_is_told_to_stand_elsewhere(tmp_path):

@@ -193,3 +193,19 @@ def test_xacro_is_told_how_to_be_expanded(tmp_path):
     source = written(tmp_path, robot_dot_xacro="<robot/>")
     with pytest.raises(SceneFileError, match=r"run: xacro FILE > robot\.urdf, and give that"):
         imported(str(source))
+
+
+def test_words_of_older_versions_do_not_matter_where_they_are_not_of_bodies(tmp_path):
+    """apirate, njmax and others are gone from MuJoCo; a keyframe has a number for each actuator."""
+    old = """<mujoco><option apirate="200" gravity="0 0 -3"><flag warmstart="enable" override="on"/></option>
+    <size njmax="500" nconmax="100"/><visual><old/></visual><actuator><motor joint="none" old="1"/></actuator>
+    <worldbody><geom name="floor" type="plane" size="1 1 1"/>{}</worldbody>
+    <keyframe><key name="up" qpos="0 0 2 1 0 0 0" ctrl="0.5"/></keyframe></mujoco>"""
+    scene, notes = imported(str(written(tmp_path, old_dot_xml=old.format(BALL))), keyframe="up")
+    assert scene.object.pose_world_object.position_m[2] == 2.0
+    assert "loads: the weight alone, with a gravity of (0, 0, -3) m/s^2" in notes
+
+
+def test_a_urdf_without_its_world_has_one(tmp_path):
+    urdf = peg_urdf("peg.obj").replace('<link name="world"/>', "")
+    assert sizes(written(tmp_path, peg_dot_obj=PEG, peg_dot_urdf=urdf)) == pytest.approx([0.007, 0.008, 0.05], abs=1e-8)

@@ -34,6 +34,11 @@ def test_of_our_scenes_there_is_nothing_to_remark(path: Path) -> None:
 
 
 REMARKED = {
+    "parts of the source that are left out": (
+        scene(left_out=["terrain", "finger"]),
+        "the source of this scene has terrain, finger, too, which is left out here: where it would touch the object,"
+        " nothing holds that is shown",
+    ),
     "friction above what there is": (
         scene(friction_coefficient=3.0),
         "friction: a coefficient of 3 is more than dry surfaces have (rubber about 1); an angle is given as angle_deg",

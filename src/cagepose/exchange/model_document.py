@@ -14,7 +14,7 @@ from cagepose.exchange.model_bodies import WORLD_BODY, ModelBodies
 from cagepose.exchange.model_contacts import ModelContacts
 from cagepose.exchange.model_friction import scene_friction
 from cagepose.exchange.model_names import name_them
-from cagepose.exchange.model_overlaps import freed, why_not
+from cagepose.exchange.model_overlaps import freed
 from cagepose.exchange.model_root import short_path
 from cagepose.exchange.model_shapes import LEFT_OUT, GeomShapes, reach_m
 from cagepose.exchange.model_text import ModelText, read_model_text
@@ -71,7 +71,7 @@ def model_document(source: str, chosen: Chosen) -> tuple[Data, list[str]]:
     found = compiled(text, source, chosen.keyframe, chosen.qpos)
     reader = _Reader(source, found, beside or {}, text, with_hulls=not text.is_urdf)
     data = reader.document(chosen.object_name, chosen.cage_names)
-    if text.is_urdf and (problem := why_not(data)):
+    if text.is_urdf and (problem := reader.problem):
         reader = _Reader(source, found, beside or {}, text, with_hulls=True)
         data = reader.document(chosen.object_name, chosen.cage_names)
         told.append(f"meshes are their hulls here: of the meshes themselves, one {problem}")
@@ -90,6 +90,7 @@ class _Reader:
     def __init__(self, source: str, compiled: Data, beside: Data, text: ModelText, *, with_hulls: bool) -> None:
         self.source, self.beside, self.text = source, beside, text
         self.notes = list[str]()
+        self.problem: str | None = None  # why what `document` returned is no scene
         self.bodies, self.contacts = ModelBodies(source, compiled), ModelContacts(compiled)
         self.shapes = GeomShapes(self.notes, None if with_hulls else text.files)
         self.hulls: list[str] = compiled["hulls"]
@@ -113,7 +114,7 @@ class _Reader:
         found["object"] = {"shapes": of_part, **self.inertial(of_object, held), "pose": METRES.pose(bodies.pose(held))}
         found["cage"] = self.cage(walls, of_cage, held, reach)
         found["loads"] = self.loads()
-        found, inside, notes = freed(found, reach, self.source)
+        found, inside, notes, self.problem = freed(found, reach, self.source)
         self.notes += notes
         found |= self.friction(parts, [geom for geom in walls if geom["label"] not in inside])
         if left_out + inside:

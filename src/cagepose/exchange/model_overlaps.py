@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cagepose.errors import FileProblem, SceneError, SceneFileError
+from cagepose.errors import FileProblem, Problem, SceneError, SceneFileError
 from cagepose.files.scene_data import scene_of
 from cagepose.model.scene import StartsInside, millimetres
 
@@ -22,13 +22,24 @@ LIFTS = (1.001, 1.5, 2.0, 4.0)
 
 
 class Freed(NamedTuple):
-    """The data of a scene whose object starts beside its cage, the names of what was taken away for that, and what is
-    to be said of it.
+    """The data of a scene whose object starts beside its cage.
+
+    Attributes
+    ----------
+    data
+        Those of the scene.
+    left_out
+        The names of what was taken away.
+    notes
+        What is to be said of it.
+    problem
+        Why the scene is none all the same; None: it is one.
     """
 
     data: Data
     left_out: list[str]
     notes: list[str]
+    problem: str | None
 
 
 def freed(data: Data, reach_m: float, source: str) -> Freed:
@@ -47,7 +58,7 @@ def freed(data: Data, reach_m: float, source: str) -> Freed:
         It starts in all of the cage, or in more than `MOST_LEFT_OUT` of its elements.
     """
     left_out, notes = list[str](), list[str]()
-    while (inside := _deepest(data)) is not None:
+    while isinstance(inside := _problem(data), StartsInside):
         name = _name(data, inside)
         if len(left_out) >= MOST_LEFT_OUT:
             message = (
@@ -64,23 +75,15 @@ def freed(data: Data, reach_m: float, source: str) -> Freed:
         if not any(data.get("cage", {}).get(key) for key in ("points", "shapes", "bodies")):
             message = f"has the object inside all of its cage ({name!r}); {REMEDY}"
             raise SceneFileError([FileProblem((), message, source)])
-    return Freed(data, left_out, notes)
+    return Freed(data, left_out, notes, None if inside is None else inside.message)
 
 
-def why_not(data: Data) -> str | None:
-    """Return what is wrong with a scene, if something is."""
+def _problem(data: Data) -> Problem | None:
+    """Return what is wrong with a scene, that it starts inside first; None: nothing."""
     try:
         scene_of(data)
     except SceneError as error:
-        return error.problems[0].message
-    return None
-
-
-def _deepest(data: Data) -> StartsInside | None:
-    try:
-        scene_of(data)
-    except SceneError as error:
-        return next((problem for problem in error.problems if isinstance(problem, StartsInside)), None)
+        return max(error.problems, key=lambda problem: isinstance(problem, StartsInside))
     return None
 
 
@@ -94,7 +97,7 @@ def _lifted(data: Data, depth_m: float) -> tuple[float, Data] | None:
     for times in LIFTS:
         place = (np.array(pose["position"]) + times * depth_m * up).tolist()
         higher = {**data, "object": {**data["object"], "pose": {**pose, "position": place}}}
-        if _deepest(higher) is None:
+        if _problem(higher) is None:
             return times * depth_m, higher
     return None
 

@@ -1,7 +1,7 @@
 """A model as MuJoCo's compiler may have it: `read_model_text`. What could do harm is refused before that sees it.
 
-All that it includes is in one text, and all meshes are files that were found, by names of ours. What is only seen,
-textures and materials and the visuals of URDF, is not in it.
+All that it includes is in one text, and all meshes are files that were found, by names of ours. What is only seen is
+not in it, nor what moves or measures bodies, which older models have in words that MuJoCo no longer knows.
 """
 
 from __future__ import annotations
@@ -24,9 +24,19 @@ MOST_NESTED = 200
 MESH_SUFFIXES = (".obj", ".stl", ".msh")
 """What MuJoCo reads as a mesh."""
 FOLDERS = ("meshdir", "texturedir", "assetdir")
-SEEN_ALONE = {"mujoco": ("texture", "material", "skin"), "robot": ("visual", "material", "gazebo", "transmission")}
+NOT_BODIES = {
+    "mujoco": (
+        *("texture", "material", "skin", "visual"),
+        *("size", "statistic", "sensor", "actuator", "tendon", "equality"),
+    ),
+    "robot": ("visual", "material", "gazebo", "transmission"),
+}
 """Elements without which bodies stay what they are, by root."""
-SEEN_ALONE_ATTRIBUTES = ("material", "texture")
+NOT_OF_BODIES = ("material", "texture")
+"""Attributes of that kind."""
+TAKEN = {"option": ("gravity",), "flag": ("filterparent",), "key": ("name", "time", "qpos", "mpos", "mquat")}
+"""All attributes that count, of some elements of MJCF."""
+WORLD = "world"
 XACRO = "is xacro, whose macros only ROS's own program expands; run: xacro FILE > robot.urdf, and give that"
 ATTACHED = "attaches the model {!r}, which import does not read; write both as one file (MuJoCo: MjSpec.to_xml)"
 
@@ -84,7 +94,7 @@ class _Reading:
         self.source = source
         self.folder, self.places = Path(source).parent, Places()
         self.model = parsed(Path(source), source, self.places)
-        if self.model.tag not in SEEN_ALONE:
+        if self.model.tag not in NOT_BODIES:
             message = f"is XML with the root <{self.model.tag}>; give MJCF (<mujoco>) or URDF (<robot>)"
             raise SceneFileError([FileProblem((), message, source)])
         self.is_urdf = self.model.tag == "robot"
@@ -96,8 +106,9 @@ class _Reading:
 
     def text(self) -> ModelText:
         self.include(self.model, 1)
-        self.leave_seen_alone()
+        self.leave_bodies()
         if self.is_urdf:
+            self.add_world()
             self.name_urdf_files()
         else:
             self.name_mjcf_files()
@@ -132,14 +143,15 @@ class _Reading:
         self.include(holder, depth + 1)
         return list(holder)
 
-    def leave_seen_alone(self) -> None:
-        left = SEEN_ALONE[self.model.tag]
+    def leave_bodies(self) -> None:
+        left, taken = NOT_BODIES[self.model.tag], {} if self.is_urdf else TAKEN
         for element in self.model.iter():
             if element.tag.startswith("xacro:"):
                 raise self.refused(XACRO, element)
             element[:] = [child for child in element if child.tag not in left]
-            for key in SEEN_ALONE_ATTRIBUTES:
-                element.attrib.pop(key, None)
+            wanted = taken.get(element.tag, element.attrib)
+            for key in [key for key in element.attrib if key in NOT_OF_BODIES or key not in wanted]:
+                del element.attrib[key]
 
     def name_mjcf_files(self) -> None:
         compilers = list(self.model.iter("compiler"))
@@ -154,6 +166,12 @@ class _Reading:
             if element.tag in ("mesh", "hfield") and element.get("name") is None:
                 element.set("name", Path(name).stem)
             element.set("file", self.file(path, name, element))
+
+    def add_world(self) -> None:
+        """Add the world as a link of a URDF that has joints to it without."""
+        links = {link.get("name") for link in self.model.iter("link") if link.get("name")}
+        if WORLD not in links and any(parent.get("link") == WORLD for parent in self.model.iter("parent")):
+            self.model.insert(0, Element("link", {"name": WORLD}))
 
     def name_urdf_files(self) -> None:
         compilers = list(self.model.iter("compiler"))
