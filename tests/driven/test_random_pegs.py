@@ -12,6 +12,8 @@ from driven.test_whitney import forces_of, lean_of
 
 LEAST_N = 1e-3
 """A state whose contacts carry less than this, or are nearer to opening, may be that or the next one."""
+MOST_WITHOUT_REST = 0.05
+"""Of the pegs that statics has one state for: so many may end otherwise than at rest."""
 
 
 def drawn(seed: int) -> tuple[Insertion, float, float, str]:
@@ -66,6 +68,8 @@ def test_forces_and_lean_of_random_pegs_are_those_of_exact_statics(cases, say) -
         worst_force, worst_lean = max(worst_force, off), max(worst_lean, lean)
         assert off <= 1e-8, (seed, insertion, forces, one.forces_n)
         assert lean <= 1e-9, seed
+    n_pegs, n_rested = ended.total() - ended["left out"], ended["1 points"] + ended["2 points"]
     say(f"pegs: {dict(ended)}; forces within {worst_force:.1e} of the greatest, lean within {worst_lean:.1e} rad")
     assert ended["1 points"] > 0
     assert ended["2 points"] > 0
+    assert n_pegs - n_rested <= MOST_WITHOUT_REST * n_pegs, ended

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections import Counter
 
-from cagepose.cli.tolerances import SIDEWAYS_OF_NORMAL
+from cagepose.cli.tolerances import LEAST_PRESS, SIDEWAYS_OF_NORMAL
 from cagepose.files.units import from_metres
 from cagepose.files.words import LengthWords
 from cagepose.model.checks import FloatArray
-from cagepose.model.wording import components
+from cagepose.model.wording import components, short
 from cagepose.runs.run import Run
 from cagepose.studies.margin import ContactMargin, Margin
 from cagepose.studies.press_limits import press_limits
@@ -36,11 +36,13 @@ def press_lines(run: Run) -> list[tuple[str, str]]:
     limits = press_limits(run)
     if not limits:
         return [("may press", "no force is known with which all is in balance")]
-    told = (
-        f"{name} with {least:.6g} N or more" if math.isinf(most) else f"{name} with {least:.6g} to {most:.6g} N"
-        for name, (least, most) in limits.items()
-    )
-    return [("may press", "; ".join(told))]
+    return [("may press", "; ".join(f"{name} with {_between(*ends)}" for name, ends in limits.items()))]
+
+
+def _between(least: float, most: float) -> str:
+    """``7.42545 N or more``; ``0.2 to 12.5 N``."""
+    upward = "N or more" if math.isinf(most) else f"to {short(most, 6, LEAST_PRESS)} N"
+    return f"{short(least, 6, LEAST_PRESS)} {upward}"
 
 
 def _extra(certain: float, unit: str, preposition: str, direction: FloatArray) -> str:

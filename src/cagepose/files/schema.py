@@ -189,7 +189,7 @@ class LoadModel(Mapping):
     press: Presses | None = Field(
         None,
         description="BODY: how it presses (quasistatic): with a force or a spring, along a direction. It goes on, or"
-        " gives way, until all is at rest. Not beside drive.",
+        " gives way, until all is at rest, also beside a drive.",
         examples=[{"pad": {"force": 12, "along": [1, 0, 0]}}],
     )
 

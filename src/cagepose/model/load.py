@@ -158,7 +158,8 @@ class Load:
         SceneError
             Nothing that acts, a zero gravity, both ``force`` and ``forces``, arguments of other classes, a force
             without a magnitude beside other forces, moments, springs, a limit or a press, a body without legs, a limit
-            that is not above zero, without a drive, or of travels and turns at once, or a press beside a drive.
+            that is not above zero, without a drive, or of travels and turns at once, a press of a body that is driven
+            along its direction or turned, or a spring that rides on a body that presses.
         """
         problems = ProblemList()
         check_text(name, ("name",), problems)

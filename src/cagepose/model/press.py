@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
+from cagepose.kernels.contact.pressing import MOST_PRESSING
 from cagepose.model.checks import FloatArray, ProblemList, is_finite, unit_vector
 from cagepose.model.wording import coordinates, few
-
-MOST = 6
-"""So many bodies may press in one phase: each is a freedom of the mechanics beside the six of the object."""
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -75,6 +73,7 @@ def presses_of(given: object, problems: ProblemList) -> dict[str, Press]:
             problems.add(("press", name), f"is of type {type(press).__name__}; give a cagepose.Press")
         else:
             found[name] = press
-    if len(found) > MOST:
-        problems.add(("press",), f"has {len(found)} bodies ({few(found)}); at most {MOST} may press in one phase")
+    if len(found) > MOST_PRESSING:
+        message = f"has {len(found)} bodies ({few(found)}); at most {MOST_PRESSING} may press in one phase"
+        problems.add(("press",), message)
     return found

@@ -17,6 +17,7 @@ from cagepose.model.drive import Drive
 from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.runs.actions import body_numbers
 from cagepose.runs.run import PhaseRun, Run
 from cagepose.runs.tolerances import TENSION_AT_ZERO
 
@@ -144,7 +145,7 @@ def displaced_after(run: Run, phase: int) -> FloatArray:
 
 def pressing_forces(scene: Scene, phase: int, displaced: FloatArray) -> dict[str, float]:
     """Return how hard each body presses in a phase where the bodies are displaced, as in `at_start`; newtons."""
-    found, rows = dict[str, float](), {body.name: row for row, body in enumerate(scene.cage.bodies, start=1)}
+    found, rows = dict[str, float](), body_numbers(scene)
     for name, press in scene.loads[phase].press.items():
         row = rows[name]
         origin = scene.cage.bodies[row - 1].pose_cage_body.position_m

@@ -15,7 +15,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.runs.actions import wrench_at
+from cagepose.runs.actions import body_numbers, wrench_at
 from cagepose.runs.cases import contact_friction
 from cagepose.runs.drives import displaced_after, pressing_forces
 from cagepose.runs.methods import chosen_method
@@ -110,8 +110,7 @@ def _pressed(
     """Return what unit forces along the directions of contacts do along the ways of k bodies that press, (n, 3, k), and
     how hard each presses where it is, (k,), newtons.
     """
-    cage, presses = scene.cage, scene.loads[phase].press
-    numbers = {body.name: number for number, body in enumerate(cage.bodies, start=1)}
+    cage, presses, numbers = scene.cage, scene.loads[phase].press, body_numbers(scene)
     of_elements = dict(zip(cage.element_names, cage.element_bodies, strict=True))
     bodies = np.array([of_elements[face.point] for face in faces], dtype=np.int64)
     found = np.zeros((len(faces), 3, len(presses)))

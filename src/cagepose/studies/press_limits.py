@@ -8,7 +8,7 @@ from cagepose.kernels.boundary.geometry import empty_cage
 from cagepose.kernels.outcome import at_pose
 from cagepose.kernels.stability.proof import empty_proof_workspace
 from cagepose.model.checks import expect
-from cagepose.runs.actions import load_size
+from cagepose.runs.actions import body_numbers, load_size
 from cagepose.runs.cases import cases_of, part_of
 from cagepose.runs.drives import displaced_after, pressing_forces
 from cagepose.runs.methods import chosen_method
@@ -44,7 +44,7 @@ def press_limits(run: Run, phase: int = -1) -> dict[str, tuple[float, float]]:
     if run.phases[number].verdict not in AT_REST:
         return {}
     asked = _Asked(run, number)
-    return {name: asked.limits(name) for name in run.scene.loads[number].press if asked.holds(name, asked.forces[name])}
+    return {name: asked.limits(name) for name in asked.forces} if asked.is_balanced() else {}
 
 
 class _Asked:
@@ -58,13 +58,17 @@ class _Asked:
         self.at, self.forces = empty_proof_workspace(scene.geometry), pressing_forces(scene, phase, displaced)
         forces = sum(map(abs, self.forces.values()))
         self.size = load_size(scene, phase, run.phases[phase].pose, displaced) + forces or 1.0
-        self.rows = {body.name: row for row, body in enumerate(scene.cage.bodies, start=1)}
+        self.rows = body_numbers(scene)
+
+    def is_balanced(self) -> bool:
+        """Whether it is, with all that presses as hard as it does."""
+        return at_pose.is_balanced_at_start(self.phase, self.part, self.cases, self.cage, self.at)
 
     def holds(self, name: str, force_n: float) -> bool:
         press = self.cases.drives.presses[self.phase][self.rows[name]]
         kept = float(press.force)
         press.force = kept + force_n - self.forces[name]  # of a spring it is that at the start
-        held = at_pose.is_balanced_at_start(self.phase, self.part, self.cases, self.cage, self.at)
+        held = self.is_balanced()
         press.force = kept
         return held
 

@@ -251,8 +251,9 @@ def drive_on(
         if reached - share > LEAST_ADVANCE or (is_mode and reached > share and n_still < STILL_LIMIT):
             write_state(run.trace.rows[step], here)
             add_work(drive, position, quaternion, share, end, turned, reached, work)
-            copy_pressing(work.memory.tried, work.memory.pressing)
-            move_bodies(setting.geometry, drive.phase, reached, work.memory)
+            if run.contacts.n_freedoms > WRENCH:  # what presses has gone on as well
+                copy_pressing(work.memory.tried, work.memory.pressing)
+                move_bodies(setting.geometry, drive.phase, reached, work.memory)
             same = find_rested(drive, end, turned, work)
             moved = way_between(position, quaternion, end, turned, setting.body.reach_m) > 0.0
             write_driven(drive, step, reached, end, turned, moved, work)

@@ -77,20 +77,37 @@ def lacks(body: int, work: DriveWorkspace) -> float:
 
 
 @kernel
-def begin_leg(body: int, side: float, way: float, work: DriveWorkspace) -> None:
-    """Let a body go on along its direction, or give way with a side of -1, by so much, metres, without a limit."""
-    direction, twist = work.run.proof.contacts.pressing[body].direction, work.memory.twists[body, 0]
-    work.memory.n_legs[body] = 1
-    for k in range(3):
-        twist[k], twist[3 + k] = side * way * direction[k], 0.0
-    twist[6] = way
+def rests_with(setting: Setting, state: State, asked: DriveWorkspace) -> bool:
+    """Whether forces in the cones balance the object and what presses in a workspace. Filled: its contacts at the pose
+    of a state, and their forces.
+    """
+    contacts, solver, frame = asked.run.contacts, asked.run.scratch[0].solver, frame_at(setting.body, state.quaternion)
+    if not stand_at(setting, state.position, state.quaternion, asked.run):
+        return False
+    solver.load_terms = write_whole_load(
+        setting.load,
+        contacts.pressing,
+        state.position,
+        state.quaternion,
+        frame,
+        contacts.n_freedoms,
+        solver.load,
+    )
+    code = equilibrium(contacts, frame, setting.friction.greatest, AT_REST, solver)
+    return code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
 
 
 @kernel
-def limit_leg(body: int, side: float, way: float, work: DriveWorkspace) -> None:
-    """Let a body stop where its driver's force is what it presses with."""
-    one, limits = work.run.proof.contacts.pressing[body], work.memory.limits
-    limits[body, 0], limits[body, 1] = side * one.force, -one.stiffness * way
+def begin_leg(body: int, missing: float, way: float, work: DriveWorkspace) -> None:
+    """Let a body that is resisted by so much too little go on along its direction, or give way where that is below
+    zero, by so much, metres, until its driver's force is what it presses with.
+    """
+    one, twist, side = work.run.proof.contacts.pressing[body], work.memory.twists[body, 0], math.copysign(1.0, missing)
+    work.memory.n_legs[body] = 1
+    for k in range(3):
+        twist[k], twist[3 + k] = side * way * one.direction[k], 0.0
+    twist[6] = way
+    work.memory.limits[body, 0], work.memory.limits[body, 1] = side * one.force, -one.stiffness * way
 
 
 @kernel
@@ -108,10 +125,10 @@ def begin_sweep(
         if lets_go and pressing[body].freedom > 0:
             goes = LETS_GO * setting.size_m
             begin_leg(body, -1.0, goes, work)
+            memory.limits[body, 0] = math.inf
         elif not lets_go and missing != 0.0 and only in (0, body):
             goes = longest
-            begin_leg(body, math.copysign(1.0, missing), goes, work)
-            limit_leg(body, math.copysign(1.0, missing), goes, work)
+            begin_leg(body, missing, goes, work)
     return goes
 
 
@@ -128,24 +145,14 @@ def let_others_press(
         one = memory.pressing[body]
         n_pressing += 1 if one.freedom > 0 and body != only else 0
         one.freedom = WRENCH + n_pressing - 1 if one.freedom > 0 and body != only else 0
-    asked, solver = with_pressing(work), work.run.scratch[0].solver
-    if pressing[only].freedom == 0 or n_pressing == 0:
+    asked = with_pressing(work)
+    if pressing[only].freedom == 0 or n_pressing == 0 or not rests_with(setting, state, asked):
         return 0.0, asked
-    if not stand_at(setting, state.position, state.quaternion, asked.run):
-        return 0.0, asked
-    contacts, frame = asked.run.contacts, frame_at(setting.body, state.quaternion)
-    solver.load_terms = write_whole_load(
-        setting.load, memory.pressing, state.position, state.quaternion, frame, contacts.n_freedoms, solver.load
-    )
-    code = equilibrium(contacts, frame, setting.friction.greatest, AT_REST, solver)
-    if code not in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION):
-        return 0.0, asked
-    write_drivers(contacts, state.position, state.quaternion, setting.load, 0.0, memory, work.drivers)
+    write_drivers(asked.run.contacts, state.position, state.quaternion, setting.load, 0.0, memory, work.drivers)
     missing = lacks(only, work)
     if missing == 0.0:
         return 0.0, asked
-    begin_leg(only, math.copysign(1.0, missing), longest, work)
-    limit_leg(only, math.copysign(1.0, missing), longest, work)
+    begin_leg(only, missing, longest, work)
     return longest, asked
 
 
@@ -181,11 +188,12 @@ def stand_still(work: DriveWorkspace) -> None:
 
 @kernel
 def press_on(
-    setting: Setting, cases: Cases, phase: int, state: State, step_limit: int, work: DriveWorkspace
+    drive: DriveSetting, cases: Cases, state: State, step_limit: int, work: DriveWorkspace
 ) -> tuple[int, int, State, float]:
     """Run a phase in which bodies press, from a state; return (verdict code, number of steps, state, way of all sweeps
     in metres).
     """
+    setting, phase = drive.setting, drive.phase
     run, reach_m, attempt, step, done, here = work.run, setting.body.reach_m, ALL, 0, 0.0, state
     goes_on, longest, n_let_go, n_bodies = False, reach_m, 0, len(work.memory.n_legs)
     if is_balanced(setting, here.position, here.quaternion, work):
@@ -196,7 +204,6 @@ def press_on(
         return RESTS, 1, here, done
     for _ in range(SWEEPS):
         # The object comes to rest while all bodies stand, unless it is at the end of a way, and goes on.
-        stand_still(work)
         if not goes_on:
             first, begun = step, State(here.position, here.quaternion, state.turn_step_rad, 0, 0)
             verdict, step, here = steps_from(setting, begun, first, step_limit, run)
@@ -212,7 +219,6 @@ def press_on(
         else:
             way = begin_sweep(setting, here, attempt == LET_GO, max(only - n_bodies + 1, 0), longest, work)
         if way > 0.0:
-            drive = DriveSetting(setting, phase, math.inf)
             verdict, step, here, share = drive_on(drive, here, first, step_limit, asked)
             note_sweep(first, step, done, way, work)
             done += way * share
@@ -274,27 +280,15 @@ def drive_pressed(
     """Drive bodies while others, or they themselves, press, from a rest of all; return (verdict code, number of steps,
     state, share). All that presses goes on with the object: a rest has as many freedoms more.
     """
-    setting, memory, solver = drive.setting, work.memory, work.run.scratch[0].solver
-    is_rest = is_balanced(setting, state.position, state.quaternion, work)
+    setting, memory = drive.setting, work.memory
     copy_pressing(work.run.proof.contacts.pressing, memory.pressing)
     asked = with_pressing(work)
-    frame, contacts = frame_at(setting.body, state.quaternion), asked.run.contacts
-    is_rest = stand_at(setting, state.position, state.quaternion, asked.run) and is_rest
+    is_rest = rests_with(setting, state, asked)
     note_touching(asked.run)
     write_state(asked.run.trace.rows[0], state)
     write_step(asked.run, 0, HELD if is_rest else STUCK, NONE, False, state.position, state.quaternion)
     verdict, step, here, share = STALLED, 1, state, 0.0
     if is_rest:
-        solver.load_terms = write_whole_load(
-            setting.load,
-            memory.pressing,
-            state.position,
-            state.quaternion,
-            frame,
-            contacts.n_freedoms,
-            solver.load,
-        )
-        equilibrium(contacts, frame, setting.friction.greatest, AT_REST, solver)
         verdict, step, here, share = drive_on(drive, state, 1, step_limit, asked)
     move_bodies(setting.geometry, drive.phase, share, memory)
     begin_pressing(setting.geometry, cases, drive.phase, work)

@@ -51,18 +51,17 @@ def phase_from(
         rules.turn_step_rad,
         start.tolerances,
     )
+    drive = DriveSetting(setting, phase, cases.drives.stop_at[phase])
     work.scratch[0].greatest = work.scratch[0].least_jam = math.nan  # of what is not driven
     if number_pressing(work.run.proof.contacts.pressing) > 0:
         if is_driven:
-            drive = DriveSetting(setting, phase, cases.drives.stop_at[phase])
             verdict, n_steps, end, share = drive_pressed(drive, cases, state, rules.step_limit, work)
         else:
-            verdict, n_steps, end, share = press_on(setting, cases, phase, state, rules.step_limit, work)
+            verdict, n_steps, end, share = press_on(drive, cases, state, rules.step_limit, work)
         return verdict, n_steps, end.position, end.quaternion, share
     verdict, n_steps, end = steps_from(setting, state, 0, rules.step_limit, work.run)
     share = 0.0
     if is_driven and verdict == RESTS:
-        drive = DriveSetting(setting, phase, cases.drives.stop_at[phase])
         verdict, n_steps, end, share = drive_on(drive, end, n_steps, rules.step_limit, work)
     return verdict, n_steps, end.position, end.quaternion, share
 
