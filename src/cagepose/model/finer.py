@@ -13,8 +13,8 @@ from cagepose.model.surfaces import Surface
 
 NEWTON_STEPS = 4
 """A place near two surfaces is moved onto both so many times; each squares what is left."""
-LEAST_SINE_SQUARE = 1e-8
-"""Of the angle between two surfaces: with less they are as one there."""
+LEAST_SINE_SQUARE = 1e-5
+"""Of the angle between two surfaces: with less they touch there, and a place is moved onto both half by each."""
 
 
 def finer(
@@ -63,7 +63,8 @@ def onto(places: FloatArray, surfaces: Sequence[Surface]) -> FloatArray:
         normals = np.stack([surface.normals(places) for surface in surfaces], axis=1)
         heights = np.stack([surface.heights(places) for surface in surfaces], axis=1)
         cosines = np.einsum("ij,ij->i", normals[:, 0], normals[:, 1])
-        squares = np.maximum(1.0 - cosines**2, LEAST_SINE_SQUARE)
-        shares = (heights - cosines[:, None] * heights[:, ::-1]) / squares[:, None]
+        squares = (1.0 - cosines**2)[:, None]
+        crossing = (heights - cosines[:, None] * heights[:, ::-1]) / np.maximum(squares, LEAST_SINE_SQUARE)
+        shares = np.where(squares > LEAST_SINE_SQUARE, crossing, 0.5 * heights)
         places = places - np.einsum("ij,ijk->ik", shares, normals)
     return places

@@ -178,8 +178,11 @@ def _faces(surface: ExactSurface, pieces: Sequence[Sequence[Piece]], number: int
     borders["curvature"] = [_curvature(surface, piece, normals[which]) for which, piece in of]
     loops = np.zeros(len(borders), dtype_of(Loop))
     n_loops, n_open = find_loops(normals, borders, loops) if len(of) > 0 else (0, 0)
+    loops = loops[:n_loops]
+    _, first, of_face = np.unique(borders["face"][loops["first"]], return_index=True, return_inverse=True)
+    loops["region"] = first[of_face.reshape(-1)]  # a region hangs together: all of its loops are around one face
     sides = FacePlanes(normals, offsets, np.arange(len(flat)), np.full(len(flat), number))
-    return regions_of(sides, borders, loops[:n_loops]), n_open
+    return regions_of(sides, borders, loops), n_open
 
 
 def _curvature(surface: ExactSurface, piece: Piece, normal: FloatArray) -> float:

@@ -1,0 +1,59 @@
+"""Flat faces and moments of solids of Open CASCADE, whose triangles stand for their surfaces."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from cagepose.files.step.exact_facets import facets_on_surfaces
+from cagepose.files.step.triangles import triangles_of
+from cagepose.model.boundary.features import boundary_of
+from cagepose.model.facets import Facets
+from cagepose.model.shape_moments import shape_moments
+
+pytest.importorskip("OCP")
+FLAT_FACE = 2
+RADIUS, HEIGHT = 12.0, 4.0
+
+
+def facets(solid: Any) -> Facets:
+    return facets_on_surfaces(triangles_of(solid), "part").shape
+
+
+def pin(x: float, y: float, z: float, radius: float, length: float) -> Any:
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
+    return BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(x, y, z), gp_Dir(0, 0, 1)), radius, length).Shape()
+
+
+def test_a_hole_near_the_rim_of_a_flange_is_in_its_face():
+    """There it is beyond the chords of the rim: an arc of 60 degrees is 1.6 mm from its own."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+
+    flange = pin(0.0, 0.0, 0.0, RADIUS, HEIGHT)
+    for angle in np.arange(7) * 0.87:
+        hole = pin(10.6 * math.cos(angle), 10.6 * math.sin(angle), -1.0, 1.1, 9.0)
+        flange = BRepAlgoAPI_Cut(flange, hole).Shape()
+    features = np.asarray(boundary_of([facets(flange)], 1e-7).features)
+    faces = features[features["kind"] == FLAT_FACE]
+    assert len(faces) == 2
+    assert (faces["last_bound"] - faces["first_bound"]).tolist() == [8 * 6, 8 * 6]  # six arcs around each circle
+
+
+def test_a_dome_that_goes_over_into_its_bar_has_the_moments_of_both():
+    """Surfaces that touch along a circle do not cross there: its middles are on both, too."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeSphere
+    from OCP.gp import gp_Pnt
+
+    ball = BRepPrimAPI_MakeSphere(gp_Pnt(0.0, 0.0, HEIGHT), RADIUS).Shape()
+    bar = pin(0.0, 0.0, HEIGHT - 30.0, RADIUS, 30.0)
+    found = shape_moments(facets(BRepAlgoAPI_Fuse(ball, bar).Shape()))
+    parts = math.pi * RADIUS**2 * 30.0, math.pi * RADIUS**3 * 2.0 / 3.0
+    middles = HEIGHT - 15.0, HEIGHT + RADIUS * 3.0 / 8.0
+    assert found.volume_m3 == pytest.approx(sum(parts), rel=1e-10)
+    assert found.centroid_m == pytest.approx([0.0, 0.0, np.dot(parts, middles) / sum(parts)], abs=1e-9)
