@@ -109,7 +109,8 @@ def bulge_at(arc: Bound, place: Vector, normal: Vector) -> float:
     """Return how far a place is from the chord of a segment that is an arc, to the side of the arc, metres."""
     start = vector_from(arc.direction)
     along = minus(vector_from(arc.end), start)
-    return math.copysign(dot(cross(along, normal), minus(place, start)) / norm(along), arc.limit)
+    aside = dot(cross(along, normal), minus(place, start)) / norm(along)
+    return aside if arc.limit > 0.0 else -aside
 
 
 @kernel

@@ -17,7 +17,7 @@ from cagepose.kernels.union.loops import Border, Loop, find_loops
 from cagepose.model.boundary.blocks import Block
 from cagepose.model.boundary.curves import ARC, Curve, curves_of, pieces_of
 from cagepose.model.boundary.regions import FacePlanes, regions_of
-from cagepose.model.boundary.round_features import ball_of, circle_of, side_of, tip_of
+from cagepose.model.boundary.round_features import ball_of, circle_of, is_within_caps, side_of, tip_of
 from cagepose.model.boundary.surface_corners import corners_of
 from cagepose.model.boundary.surface_regions import Regions, regions_on
 from cagepose.model.boundary.trimmed import Edges, Faces, TrimmedUnion
@@ -89,8 +89,8 @@ def exact_block(shape: Facets, number: int) -> Block:
 
 
 def surface_of(shape: Facets) -> ExactSurface:
-    """Return a surface with its curves in the frame of its body. A ball that anything but circles trims, or a hollow
-    one, stays facets.
+    """Return a surface with its curves in the frame of its body. A ball that anything but circles trims, or one
+    with a notch, or a hollow one, stays facets.
     """
     surfaces = [surface.changed(1.0, shape.pose_body_shape) for surface in shape.surfaces]
     first = np.array([*(surfaces.index(surface) for surface in surfaces), -1])
@@ -108,11 +108,14 @@ def surface_of(shape: Facets) -> ExactSurface:
             for region in (curve.left, curve.right)
             if regions.surfaces[region].kind == SPHERE
         }
+        found = ExactSurface(vertices_m, triangles, twins, regions, curves, [])
+        if not lost:
+            balls = [region for region, face in enumerate(regions.surfaces) if face.kind == SPHERE]
+            lost = {regions.surfaces[region] for region in balls if not is_within_caps(found, region)}
         if not lost:
             break
         kept &= np.array([surface not in lost for surface in surfaces])
-    sines = [_sine_beside(vertices_m, curve, regions.surfaces) for curve in curves]
-    return ExactSurface(vertices_m, triangles, twins, regions, curves, sines)
+    return found._replace(sines=[_sine_beside(vertices_m, curve, regions.surfaces) for curve in curves])
 
 
 def _sine_beside(vertices_m: FloatArray, curve: Curve, surfaces: Sequence[Surface]) -> float:

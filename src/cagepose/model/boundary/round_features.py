@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 TIP = 1e-9
 """Fraction of a cone's greatest radius: a narrower end is its tip."""
+BEYOND_CAP = 1e-4
+"""Cosine: corners of a ball's triangles are no farther beyond its circles."""
 GENERATORS = 48
 """Angles at which a line along a side is looked for that is on it for long."""
 FIRST_GENERATOR = 0.7548
@@ -48,17 +50,32 @@ def circle_of(surface: ExactSurface, index: int, number: int) -> Row:
     return Row(CIRCLE, number, curve.center_m, curve.axis, out, *numbers, [], curve.radius_m, box)
 
 
-def ball_of(surface: ExactSurface, region: int, number: int) -> Row:
-    """Return what circles leave of a ball as a feature: they bound its normals."""
+def _caps(surface: ExactSurface, region: int) -> list[tuple[FloatArray, float]]:
+    """Return the half-spaces of normals of a ball that circles leave: a unit vector, and a cosine that is not passed."""
     ball = surface.regions.surfaces[region]
     center, radius = np.array(ball.point_m), ball.radius_m
-    bounds = []
+    found = []
     for curve in surface.curves:
         if region in (curve.left, curve.right):
             place = surface.vertices_m[curve.nodes[0]]
             inward = np.cross(ball.normals(place[None])[0], curve.tangent(place))
             way = math.copysign(1.0, float(inward @ curve.axis)) * (-1.0 if region == curve.left else 1.0) * curve.axis
-            bounds.append((HALF_SPACE, way, NOWHERE, float(way @ (curve.center_m - center)) / radius))
+            found.append((way, float(way @ (curve.center_m - center)) / radius))
+    return found
+
+
+def is_within_caps(surface: ExactSurface, region: int) -> bool:
+    """Whether a region of a ball is what all of its circles leave, and not more, as where a notch is cut out."""
+    ball = surface.regions.surfaces[region]
+    normals = ball.normals(_places_of(surface, region))
+    return all(float((normals @ way).max()) <= limit + BEYOND_CAP for way, limit in _caps(surface, region))
+
+
+def ball_of(surface: ExactSurface, region: int, number: int) -> Row:
+    """Return what circles leave of a ball as a feature: they bound its normals."""
+    ball = surface.regions.surfaces[region]
+    center, radius = np.array(ball.point_m), ball.radius_m
+    bounds = [(HALF_SPACE, way, NOWHERE, limit) for way, limit in _caps(surface, region)]
     of_region = surface.triangles[surface.regions.of_triangles == region]
     toward = NOWHERE
     if bounds:
