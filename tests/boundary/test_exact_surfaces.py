@@ -151,6 +151,31 @@ def test_a_ball_and_a_post_stand_in_the_end_of_a_slot():
         assert found.phases[-1].pose.position_m[0] == pytest.approx(expected, abs=1e-9)
 
 
+def test_points_meet_a_face_within_its_arcs_alone(cases):
+    """A fork with a round end to its slot, and a round nose, falls on single points: by its profile, or past them."""
+    half, end, nose = 0.003, 0.004, 0.01
+    fork = [
+        Corner((-end, -nose)),
+        Corner((0.01, -nose)),
+        Corner((0.01, -half)),
+        Corner((0.0, -half), (0.0, 0.0)),
+        Corner((-half, 0.0), (0.0, 0.0)),
+        Corner((0.0, half)),
+        Corner((0.01, half)),
+        Corner((0.01, nose)),
+        Corner((-end, nose), (-end, 0.0)),
+        Corner((-end - nose, 0.0), (-end, 0.0)),
+    ]
+    part, rng = prism(fork, 0.005, "fork"), np.random.default_rng(8)
+    falls = [Load("weight", gravity=(0.0, -9.81, 0.0))]
+    for _ in range(cases(60, 3000)):
+        x, z = rng.uniform((-0.016, -0.012), (0.012, 0.012))
+        in_slot = (x > 0.0 and abs(z) < half) or math.hypot(x, z) < half
+        in_outline = (-end < x < 0.01 and abs(z) < nose) or math.hypot(x + end, z) < nose
+        found = run(Scene(Object(shapes=[part]), Cage([(x, -0.02, z)]), falls))
+        assert (found.phases[0].events[0].rule == "escapes") == (in_slot or not in_outline), (x, z)
+
+
 def test_a_scene_keeps_its_surfaces(tmp_path):
     made = scene([rounded_bar(0.02, 0.012, 0.003, 0.03)], [cradle(), FLOOR], Pose((0, 0, 0.05)))
     save_scene(made, tmp_path / "scene.yaml")

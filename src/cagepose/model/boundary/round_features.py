@@ -51,7 +51,7 @@ def circle_of(surface: ExactSurface, index: int, number: int) -> Row:
 
 
 def _caps(surface: ExactSurface, region: int) -> list[tuple[FloatArray, float]]:
-    """Return the half-spaces of normals of a ball that circles leave: a unit vector, and a cosine that is not passed."""
+    """Return the half-spaces of normals of a ball that circles leave: unit vectors, and cosines that are not passed."""
     ball = surface.regions.surfaces[region]
     center, radius = np.array(ball.point_m), ball.radius_m
     found = []
