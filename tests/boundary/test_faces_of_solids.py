@@ -10,6 +10,7 @@ import pytest
 
 from cagepose.files.step.exact_facets import facets_on_surfaces
 from cagepose.files.step.triangles import triangles_of
+from cagepose.model.boundary.exact_surface import exact_block
 from cagepose.model.boundary.features import boundary_of
 from cagepose.model.facets import Facets
 from cagepose.model.shape_moments import shape_moments
@@ -57,3 +58,24 @@ def test_a_dome_that_goes_over_into_its_bar_has_the_moments_of_both():
     middles = HEIGHT - 15.0, HEIGHT + RADIUS * 3.0 / 8.0
     assert found.volume_m3 == pytest.approx(sum(parts), rel=1e-10)
     assert found.centroid_m == pytest.approx([0.0, 0.0, np.dot(parts, middles) / sum(parts)], abs=1e-9)
+
+
+def test_the_box_around_a_face_holds_all_of_its_arcs():
+    """An arc of a half ring bulges beyond both of its ends."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
+    from OCP.gp import gp_Pnt
+
+    ring = BRepAlgoAPI_Cut(pin(0.0, 0.0, 0.0, 8.4, HEIGHT), pin(0.0, 0.0, -1.0, 6.7, 9.0)).Shape()
+    for side in (-3.0, 0.5, 1.0, 2.0, 3.0):
+        cut = BRepPrimAPI_MakeBox(gp_Pnt(-20.0, side, -1.0), gp_Pnt(20.0, 20.0, 9.0)).Shape()
+        shape = facets(BRepAlgoAPI_Cut(ring, cut).Shape())
+        block = exact_block(shape, 0)
+        is_face = block.features["kind"] == FLAT_FACE
+        for face, (low, high) in zip(block.features[is_face], block.boxes[is_face], strict=True):
+            on = [np.allclose(surface.axis, face["direction"]) for surface in shape.surfaces]
+            places = shape.vertices_m[np.unique(shape.triangles[np.array(on)[shape.on]])]
+            is_own = (np.abs(places - face["point"]) @ np.abs(face["direction"])) < 1e-6
+            if face["last_bound"] - face["first_bound"] > 4:
+                assert (places[is_own] >= low - 1e-9).all()
+                assert (places[is_own] <= high + 1e-9).all()

@@ -7,6 +7,7 @@ curves, and along what of its surfaces is between two of them, where that is mor
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,7 @@ from cagepose.model.boundary.surface_union import Tangents, cones_at
 from cagepose.model.boundary.trimmed import Vertices
 from cagepose.model.checks import FloatArray
 from cagepose.model.sides import starts_and_ends
-from cagepose.model.surfaces import CONE, PLANE, Surface
+from cagepose.model.surfaces import CONE, PLANE, SPHERE, Surface
 
 if TYPE_CHECKING:
     from cagepose.model.boundary.exact_surface import ExactSurface
@@ -27,8 +28,14 @@ HALF_TURN = math.pi + 1e-9
 """Radians. A flat face that takes up more at a place leaves no corner there."""
 WIDE = 0.5 * math.pi
 """Radians. Directions within a face are told that are no farther apart."""
+LESS_THAN_HALF = 0.9999 * math.pi
+"""Radians. Directions within a round side are told that are no farther apart, its generators among them."""
+SAME_WAY = 1e-9
+"""Radians between directions that are one."""
 TIP = 1e-9
 """Fraction of a cone's size: what is nearer to its axis is its tip."""
+GENERATORS_APART = math.radians(22.5)
+"""Angle about the axis. At the tip of a cone, the generators that are told are no farther apart."""
 
 
 Ways = dict[int, tuple[FloatArray, bool]]
@@ -137,10 +144,46 @@ def _between(face: Surface, place: FloatArray, first: FloatArray, last: FloatArr
     between these, radians: from the first counter-clockwise to the last.
     """
     if face.kind == CONE and face.radius_at(place) <= TIP * abs(face.radius_m):
-        return [], 0.0
+        return _between_at_tip(face, first, last), 0.0
     normal = face.normals(place[None])[0]
     aside = np.cross(normal, first)
-    turn = math.atan2(float(aside @ last), float(first @ last)) % (2.0 * math.pi)
-    n_parts = max(1, math.ceil(turn / WIDE - 1e-9))
+    aside = aside / np.linalg.norm(aside)
+    ahead = np.cross(aside, normal)  # a chord of a round face is not quite within it
+    turn = math.atan2(float(aside @ last), float(ahead @ last)) % (2.0 * math.pi)
+    ways = dict[float, FloatArray]()
+    for way in _generators(face, place):
+        angle = math.atan2(float(aside @ way), float(ahead @ way)) % (2.0 * math.pi)
+        if SAME_WAY < angle < turn - SAME_WAY:
+            ways[angle] = way
+    widest = WIDE if face.kind in (PLANE, SPHERE) else LESS_THAN_HALF
+    for one, other in pairwise([0.0, *sorted(ways), turn]):
+        n_parts = max(1, math.ceil((other - one) / widest - 1e-9))
+        for k in range(1, n_parts):
+            angle = one + (other - one) * k / n_parts
+            ways[angle] = math.cos(angle) * ahead + math.sin(angle) * aside
+    return list(ways.values()), turn
+
+
+def _generators(face: Surface, place: FloatArray) -> list[FloatArray]:
+    """Return the directions in which straight lines lead along a cylinder or a cone from a place of it: beside a chain
+    of short edges nothing else of it is straight.
+    """
+    if face.kind in (PLANE, SPHERE):
+        return []
+    axis, seen = np.array(face.axis), place - np.array(face.point_m)
+    across = seen - (seen @ axis) * axis
+    way = axis + face.slope * across / np.linalg.norm(across)
+    unit = way / np.linalg.norm(way)
+    return [unit, -unit]
+
+
+def _between_at_tip(cone: Surface, first: FloatArray, last: FloatArray) -> list[FloatArray]:
+    """As `_between`, of a cone at its tip: its generators between two."""
+    out = math.copysign(1.0, -cone.slope * cone.radius_m) * np.array(cone.axis)
+    up = float(first @ out) * out
+    across = first - up
+    aside = np.cross(out, across)
+    turn = math.atan2(float(aside @ last), float(across @ last)) % (2.0 * math.pi)
+    n_parts = max(1, math.ceil(turn / GENERATORS_APART - 1e-9))
     angles = [turn * k / n_parts for k in range(1, n_parts)]
-    return [math.cos(angle) * first + math.sin(angle) * aside for angle in angles], turn
+    return [up + math.cos(angle) * across + math.sin(angle) * aside for angle in angles]

@@ -79,8 +79,8 @@ def _faces(faces: Faces) -> Rows:
     bounds["end"] = np.where(is_convex[:, None], 0.0, ends)
     bounds["limit"] = np.where(is_convex, -np.einsum("ij,ij->i", inward, starts), faces.borders["curvature"])
     bulge = _bulges(np.linalg.norm(ends - starts, axis=1), faces.borders["curvature"])[:, None]
-    lowest = np.minimum.reduceat(faces.borders["start"] - bulge, first)
-    highest = np.maximum.reduceat(faces.borders["start"] + bulge, first)
+    lowest = np.minimum.reduceat(np.minimum(faces.borders["start"], faces.borders["end"]) - bulge, first)
+    highest = np.maximum.reduceat(np.maximum(faces.borders["start"], faces.borders["end"]) + bulge, first)
     return features, bounds, np.stack([lowest, highest], axis=1)
 
 
