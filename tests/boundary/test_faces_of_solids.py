@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from cagepose.errors import SceneError
 from cagepose.files.step.exact_facets import facets_on_surfaces
 from cagepose.files.step.triangles import triangles_of
 from cagepose.model.boundary.exact_surface import exact_block
@@ -79,3 +81,15 @@ def test_the_box_around_a_face_holds_all_of_its_arcs():
             if face["last_bound"] - face["first_bound"] > 4:
                 assert (places[is_own] >= low - 1e-9).all()
                 assert (places[is_own] <= high + 1e-9).all()
+
+
+def test_a_surface_that_is_not_where_its_triangles_are_is_an_error():
+    bar = facets(pin(1.0, 2.0, 3.0, RADIUS, HEIGHT))
+    for kind, changes, found in (
+        ("plane", {"point_m": (0.0, 0.0, 99.0)}, r"surfaces\[\d\]: is up to 9\d m from the corners"),
+        ("cylinder", {"radius_m": 11.9}, r"surfaces\[0\]: is up to 0\.1 m from the corners .* correct it, or on"),
+        ("cylinder", {"radius_m": -RADIUS}, r"surfaces\[0\]: faces away from its triangles"),
+    ):
+        wrong = [replace(one, **changes) if one.kind == kind else one for one in bar.surfaces]
+        with pytest.raises(SceneError, match=found):
+            Facets(bar.vertices_m, bar.triangles, bar.flat_m, None, "part", wrong, bar.on)

@@ -17,7 +17,7 @@ from cagepose.model.near_pairs import near_pairs
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Shape, set_lengths
 from cagepose.model.sides import IntArray, open_sides
-from cagepose.model.surfaces import Surface, checked_surfaces
+from cagepose.model.surfaces import Surface, check_on_surfaces, checked_surfaces
 from cagepose.model.tolerances import DISTANCE_OUTSIDE
 
 FLAT = 1e-9
@@ -98,6 +98,8 @@ class Facets(Shape):
         object.__setattr__(self, "surfaces", ())
         if not problems.problems:
             known, of = checked_surfaces(surfaces, on, len(corners), problems)
+            if not problems.problems:
+                check_on_surfaces(vertices[corners], known, of, self.flat_m, problems)
             object.__setattr__(self, "surfaces", known)
             object.__setattr__(self, "on", of)
         object.__setattr__(self, "vertices_m", vertices)

@@ -16,6 +16,8 @@ from cagepose.model.pose import Pose
 PLANE, CYLINDER, CONE, SPHERE = "plane", "cylinder", "cone", "sphere"
 STEEPEST = 1e3
 """Slope of a cone: one that is flatter is a plane."""
+ROUNDING = 1e-14
+"""Fraction of the greatest coordinate that places are off their surface by rounding."""
 
 
 @dataclass(frozen=True)
@@ -114,3 +116,24 @@ def checked_surfaces(
         of = np.full(n_triangles, -1, np.int64)
     of.setflags(write=False)
     return found, of
+
+
+def check_on_surfaces(
+    corners_m: FloatArray, surfaces: Sequence[Surface], on: NDArray[np.int64], flat_m: float, problems: ProblemList
+) -> None:
+    """Note surfaces that are not where the triangles are that stand for them, or face the other way.
+
+    ``corners_m`` has those of all triangles, (n, 3, 3), and ``on`` the surface of each, -1: none. What is ``flat_m``
+    near to a surface is on it, give or take rounding.
+    """
+    for index, surface in enumerate(surfaces):
+        own = corners_m[on == index]
+        off = float(np.abs(surface.heights(own.reshape(-1, 3))).max(initial=0.0))
+        areas = np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0])
+        if off > flat_m + ROUNDING * float(np.abs(corners_m).max()):
+            found = f"is up to {off:.3g} m from the corners of triangles that stand for it"
+            problems.add(("surfaces", index), f"{found}, more than flat, {flat_m:.3g} m; correct it, or on")
+        elif float(np.einsum("ij,ij->", areas, surface.normals(own.mean(axis=1)))) < 0.0:
+            problems.add(
+                ("surfaces", index), "faces away from its triangles; turn its normal, or make it hollow or not"
+            )
