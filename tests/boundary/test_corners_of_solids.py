@@ -13,6 +13,8 @@ from cagepose import Box, Pose
 from cagepose.files.step.exact_facets import OnSurfaces, facets_on_surfaces
 from cagepose.files.step.triangles import triangles_of
 from cagepose.kernels.algebra.motion import Motion
+from cagepose.model.boundary.exact_surface import surface_of
+from cagepose.model.boundary.surface_corners import corners_of
 from cagepose.model.finer import finer
 
 pytest.importorskip("OCP")
@@ -53,6 +55,18 @@ def test_a_cone_that_is_cut_through_its_tip_stands_on_it(cases):
     half = without(BRepPrimAPI_MakeCone(8.0, 0.0, 12.0).Shape(), (0.0, -45.0, -1.0), 0.0)
     rng = np.random.default_rng(71)
     assert too_far(half, [Pose(quaternion_wxyz=rng.standard_normal(4)) for _ in range(cases(60, 2000))]) < 1e-6
+
+
+def test_a_cut_cone_keeps_its_tip_wherever_it_is():
+    """At the tip its side has no normal: what rounding makes of one says nothing."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone
+
+    half = without(BRepPrimAPI_MakeCone(8.0, 0.0, 12.0).Shape(), (0.0, -45.0, -1.0), 0.0).shape
+    rng = np.random.default_rng(73)
+    for _ in range(20):
+        pose = Pose(rng.uniform(-2000.0, 2000.0, 3), rng.standard_normal(4))
+        corners = corners_of(surface_of(half.moved(pose)), 0)
+        assert len(corners.places_m) == 3
 
 
 def test_a_shaft_with_an_oblique_end_lies_on_its_side(cases):

@@ -101,8 +101,10 @@ def checked_surfaces(
         problems.add(where, "is no list of surfaces; give a Surface each")
         found = ()
     for index, surface in enumerate(found):
-        numbers = (*surface.point_m, *surface.axis, surface.radius_m, surface.slope)
-        if surface.kind not in (PLANE, CYLINDER, CONE, SPHERE):
+        numbers = _numbers_of(surface)
+        if numbers is None:
+            problems.add((*where, index), "has no three numbers for its point and its axis, and one for its radius")
+        elif surface.kind not in (PLANE, CYLINDER, CONE, SPHERE):
             problems.add((*where, index), f"is a {surface.kind!r}; give a plane, a cylinder, a cone or a sphere")
         elif not np.isfinite(numbers).all() or abs(surface.slope) > STEEPEST:
             problems.add((*where, index), "has numbers that are not finite, or too large; correct them")
@@ -110,12 +112,22 @@ def checked_surfaces(
             problems.add((*where, index), "has no radius; give one")
         elif surface.kind != SPHERE and abs(math.hypot(*surface.axis) - 1.0) > 1e-9:
             problems.add((*where, index), "has an axis that is no unit vector; divide it by its length")
-    of = np.full(n_triangles, -1, np.int64) if not found else np.array(surface_of, np.int64).reshape(-1)
+    given = np.asarray(surface_of if found else np.full(n_triangles, -1)).reshape(-1)
+    of = given.astype(np.int64) if given.dtype.kind in "iu" else np.zeros(0, np.int64)
     if len(of) != n_triangles or of.min(initial=-1) < -1 or of.max(initial=-1) >= len(found):
         problems.add(("on",), f"does not give one of {len(found)} surfaces, or -1, for each of {n_triangles} triangles")
         of = np.full(n_triangles, -1, np.int64)
     of.setflags(write=False)
     return found, of
+
+
+def _numbers_of(surface: Surface) -> FloatArray | None:
+    """Return the eight numbers of a surface; None: it has others."""
+    try:
+        found = np.array([*surface.point_m, *surface.axis, surface.radius_m, surface.slope], np.float64)
+    except (TypeError, ValueError):
+        return None
+    return found if found.shape == (8,) else None
 
 
 def check_on_surfaces(

@@ -19,6 +19,8 @@ Data = dict[str, Any]
 
 NO_NAME = re.compile(r"Open CASCADE STEP translator.*|SOLID|COMPOUND|=>\[[\d:]+\]|")
 """What Open CASCADE writes, or says, where there is no name."""
+ACROSS = 2.0
+"""How far the middles of triangles may be off, in what these may be: others lead across the inside of a round part."""
 UNNAMED = "solid"
 """What a solid without a name is called, and its number."""
 MOST_FILLETS = 300
@@ -105,7 +107,7 @@ def _solid(solid: Any, most_fillets: int) -> Data:
     if core is not None:
         return {**measures, **core}  # to make triangles of a ball takes 0.3 s
     found = {**measures, **triangles_of(solid)}
-    if off_volume(found) > 0.0:  # holes across round walls come out so at times
+    if off_volume(found) > 0.0 or found["off_middles"] > ACROSS * found["off"]:  # so holes across round walls at times
         found |= triangles_of(solid, within=True)
     sharp = without_fillets(solid, faces, most_fillets) if most_fillets > 0 else None
     if sharp is not None:

@@ -97,9 +97,9 @@ def _are_one(one: Surface, other: Surface, size: float) -> bool:
     return off <= slack and abs(radius - abs(other.radius_m)) <= slack and abs(one.slope - slope) <= SAME_OF_SIZE
 
 
-def farthest_off(surfaces: list[Surface], on: FloatArray, corners: FloatArray) -> float:
-    """Return how far corners of triangles, (n, 3, 3), are from the surface that each is on, at most."""
-    off = [np.abs(surface.heights(corners[on == k])).max(initial=0.0) for k, surface in enumerate(surfaces)]
+def farthest_off(surfaces: list[Surface], on: FloatArray, places: FloatArray) -> float:
+    """Return how far places of triangles, (n, 3) or (n, 3, 3), are from the surface that each is on, at most."""
+    off = [np.abs(surface.heights(places[on == k])).max(initial=0.0) for k, surface in enumerate(surfaces)]
     return float(max(off, default=0.0))
 
 

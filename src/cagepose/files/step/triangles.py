@@ -26,7 +26,8 @@ CHORD_OF_SIZE = 1e-2
 
 def triangles_of(solid: Any, *, within: bool = False) -> Data:
     """Return the triangles of a solid, and what they stand for, see `cagepose.files.step.solids.read_step`; and how far
-    they are ``off`` at most. ``within``: those that there are are made anew, with corners within faces.
+    they are ``off`` at most, and their middles ``off_middles``. ``within``: those that there are are made anew, with
+    corners within faces.
 
     Raises
     ------
@@ -72,6 +73,7 @@ def triangles_of(solid: Any, *, within: bool = False) -> Data:
         "off": max(_off(face) for face in faces),
         "known": [astuple(surface) for surface in known],
         "on": on.tolist(),
+        "off_middles": farthest_off(known, on, vertices[joined[distinct]].mean(axis=1)),
         "off_surfaces": farthest_off(known, on, vertices[joined[distinct]]),
         "off_others": max((_off(face) for face, found in zip(faces, which, strict=True) if found < 0), default=0.0),
     }

@@ -93,11 +93,11 @@ def _ways(surface: ExactSurface) -> tuple[Ways, Ways, dict[int, float]]:
             twin = int(surface.twins[side])
             if ends[0]:
                 way = _way(surface, curve, k, start)
-                found = way, _is_hollow(surface, curve, start, way)
+                found = way, _is_hollow(surface, curve, k, start, way)
                 leaving[side], arriving[twin], lengths[side] = found, found, length
             if ends[1]:
                 way = _way(surface, curve, k, end)
-                found = -way, _is_hollow(surface, curve, end, way)
+                found = -way, _is_hollow(surface, curve, k, end, way)
                 leaving[twin], arriving[side], lengths[twin] = found, found, length
     return leaving, arriving, lengths
 
@@ -119,8 +119,13 @@ def _length(surface: ExactSurface, curve: Curve, k: int) -> float:
     return float(np.linalg.norm(surface.vertices_m[curve.nodes[last]] - surface.vertices_m[curve.nodes[first]]))
 
 
-def _is_hollow(surface: ExactSurface, curve: Curve, node: int, way: FloatArray) -> bool:
-    place = surface.vertices_m[[node]]
+def _is_hollow(surface: ExactSurface, curve: Curve, k: int, node: int, way: FloatArray) -> bool:
+    """Whether a curve is hollow at a node; of what is straight, in the middle: the tip of a cone has no normal."""
+    if curve.kind == ARC:
+        ends = np.array([node])
+    else:
+        ends = curve.nodes[[0, -1]] if curve.kind == LINE else curve.nodes[k : k + 2]
+    place = surface.vertices_m[ends].mean(axis=0, keepdims=True)
     one, other = (surface.regions.surfaces[region].normals(place)[0] for region in (curve.left, curve.right))
     return bool(np.cross(one, other) @ way < -HOLLOW)
 
