@@ -47,9 +47,16 @@ def chart_place(own: Boundary, i: int, normal: Vector, height: float) -> ChartPl
 
 
 @kernel
+def wide_of(border: Bound) -> float:
+    """Return the angle from the start of a border to its end, less than half a turn."""
+    wide: float = within_turn(border.end[0] - border.direction[0])
+    return wide
+
+
+@kernel
 def start_in_chart(border: Bound, at: ChartPlace) -> float:
     """Return by which angle the start of a border is ahead of a place, of the turn in which its middle is nearest."""
-    half = 0.5 * (border.end[0] - border.direction[0])
+    half = 0.5 * wide_of(border)
     ahead: float = within_turn(border.direction[0] + half - at.angle) - half
     return ahead
 
@@ -57,7 +64,7 @@ def start_in_chart(border: Bound, at: ChartPlace) -> float:
 @kernel
 def distance_in_chart(border: Bound, at: ChartPlace) -> float:
     """Return how far a place of a round side is from a border of it, metres."""
-    wide, high = border.end[0] - border.direction[0], at.slant * (border.end[1] - border.direction[1])
+    wide, high = wide_of(border), at.slant * (border.end[1] - border.direction[1])
     start, low = start_in_chart(border, at), at.slant * (border.direction[1] - at.height)
     across = at.radius * wide
     share = min(max(-(at.radius * start * across + low * high) / (across * across + high * high), 0.0), 1.0)
@@ -76,8 +83,10 @@ def beyond_trim(own: Boundary, i: int, normal: Vector, height: float) -> float:
     for k in range(line.first_bound, line.last_bound):
         border = own.bounds[k]
         nearest = min(nearest, distance_in_chart(border, at))
-        start, wide = start_in_chart(border, at), border.end[0] - border.direction[0]
-        if (start < 0.0) != (start + wide < 0.0):  # it crosses the way to the wide end, where there is a border always
-            level = border.direction[1] - (border.end[1] - border.direction[1]) * start / wide
+        # it crosses the way to the wide end, where there is a border always: asked of each corner by itself, so that
+        # two borders that meet in a corner have it on the same side, however near to it the way passes
+        start, end = within_turn(border.direction[0] - at.angle), within_turn(border.end[0] - at.angle)
+        if (start < 0.0) != (end < 0.0) and abs(end - start) < math.pi:
+            level = border.direction[1] - (border.end[1] - border.direction[1]) * start / (end - start)
             is_within = is_within != (level < height)
     return -nearest if is_within else nearest

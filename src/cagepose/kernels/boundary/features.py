@@ -104,7 +104,8 @@ class Bound:
     Those of a vertex and of a line hold its outward normals x, those of a face its points x as seen from
     `Feature.point`. A feature is within all of its half-spaces and circles; and if it has segments, these are the
     borders that a ray out of it crosses an odd number of times. Segments of a round side are those of its chart, with
-    the side to their left: angle about its axis from `Feature.toward` on, radians, and height along the axis, metres.
+    the side to their left: angle about its axis from `Feature.toward` on, radians, within half a turn, and height along
+    the axis, metres; each spans less than half a turn.
 
     Attributes
     ----------

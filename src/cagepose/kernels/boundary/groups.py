@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, times, vector_from
-from cagepose.kernels.boundary.chart import chart_place, distance_in_chart, is_trimmed
+from cagepose.kernels.boundary.chart import chart_place, distance_in_chart, is_trimmed, wide_of
 from cagepose.kernels.boundary.features import (
     FACE,
     HALF_SPACE,
@@ -99,7 +99,7 @@ def inward_in_chart(own: Boundary, i: int, normal: Vector, height: float, touch_
     for k in range(line.first_bound, line.last_bound):
         border = own.bounds[k]
         if distance_in_chart(border, at) <= NEAR * touch_m:
-            x, y = at.radius * (border.end[0] - border.direction[0]), at.slant * (border.end[1] - border.direction[1])
+            x, y = at.radius * wide_of(border), at.slant * (border.end[1] - border.direction[1])
             around, up = around - y / math.hypot(x, y), up + x / math.hypot(x, y)
     return around, up
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cagepose.kernels.boundary.features import CIRCLE, HALF_SPACE, SEGMENT, VERTEX
+from cagepose.kernels.circles.places import within_turn
 from cagepose.model.boundary.blocks import NOWHERE, Row
 from cagepose.model.boundary.curves import ARC, Curve, width_of
 from cagepose.model.boundary.turned_rows import side_row, tip_row
@@ -161,10 +162,7 @@ def _in_chart(
     start, end = (_chart_place(row, surface.vertices_m[node]) for node in (piece.start, piece.end))
     if start[2] or end[2]:  # the tip has no angle
         start, end = (end[0] if start[2] else start[0], *start[1:]), (start[0] if end[2] else end[0], *end[1:])
-    turn = end[0] - start[0]
-    turn -= 2.0 * math.pi * math.floor(turn / (2.0 * math.pi) + 0.5)
-    one, other = (start[0], start[1]), (start[0] + turn, end[1])
-    return (one, other) if sense > 0.0 else (other, one)
+    return (start[:2], end[:2]) if sense > 0.0 else (end[:2], start[:2])
 
 
 def _chart_place(row: Row, place: FloatArray) -> tuple[float, float, bool]:
@@ -187,13 +185,11 @@ def _generator(
         angle = FIRST_GENERATOR + 2.0 * math.pi * k / GENERATORS
         levels = []
         for (start, low), (end, high) in borders:
-            wide = end - start
-            ahead = (start + 0.5 * wide - angle) / (2.0 * math.pi)
-            first = 2.0 * math.pi * (ahead - math.floor(ahead + 0.5)) - 0.5 * wide
-            if (first < 0.0) != (first + wide < 0.0):
-                levels.append(low - (high - low) * first / wide)
+            first, last = within_turn(start - angle), within_turn(end - angle)
+            if (first < 0.0) != (last < 0.0) and abs(last - first) < math.pi:
+                levels.append(low - (high - low) * first / (last - first))
         levels.sort()
-        for begin, last in zip(levels[::2], levels[1::2], strict=False):
-            if last - begin > best[2]:
-                best = (angle, begin, last - begin)
+        for begin, until in zip(levels[::2], levels[1::2], strict=False):
+            if until - begin > best[2]:
+                best = (angle, begin, until - begin)
     return best
