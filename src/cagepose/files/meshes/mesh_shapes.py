@@ -16,7 +16,7 @@ import numpy as np
 from cagepose.files.meshes.convex_shapes import Recognised
 from cagepose.files.meshes.cuts import separate
 from cagepose.files.meshes.facets import facets_of, is_coarse, round_error
-from cagepose.files.meshes.manifolds import Triangles, without_rounding
+from cagepose.files.meshes.manifolds import Triangles, manifold3d, without_rounding
 from cagepose.files.meshes.pieces import known_pieces, parts_of
 from cagepose.files.meshes.round_holes import RoundHole, filled
 from cagepose.files.progress import tell
@@ -96,6 +96,7 @@ def _shapes(mesh: Triangles, name: str, unit: str, *, facets: bool) -> MeshShape
     if error > 0.0:
         notes.append(f"{name!r} has flat sides where it is round here, up to {_words(error, unit)} off")
     n_facets = sum(len(one.shape.triangles) for one in found if isinstance(one.shape, Facets))
+    n_facets += sum(len(hull.faces) for hull in _hulls_of(found) if round_error(hull) > 0.0)
     within = scale * max(part.within for part in parts)
     if within > 0.0:
         off = f"where these stand for what is round, they are about {_words(within, unit)} off"
@@ -112,7 +113,7 @@ def _shapes_of(part: Any, coarse: bool, *, facets: bool) -> _Part | None:
     whole, holes = filled(part)
     pieces = known_pieces(whole, [one.hole for one in holes])
     if pieces is not None and _are_in(holes, [one.shape for one in pieces]):
-        return _Part(pieces, holes, 0.0)
+        return _Part(pieces, holes, max((round_error(hull) for hull in _hulls_of(pieces)), default=0.0))
     if not facets:
         return None
     if holes:
@@ -120,6 +121,12 @@ def _shapes_of(part: Any, coarse: bool, *, facets: bool) -> _Part | None:
         if _are_in(holes, [filled_in]):
             return _Part([Recognised(filled_in, 0.0)], holes, round_error(Triangles.of(whole)))
     return _Part([Recognised(facets_of(Triangles.of(part), coarse=coarse), 0.0)], [], round_error(Triangles.of(part)))
+
+
+def _hulls_of(found: Sequence[Recognised]) -> list[Triangles]:
+    """Return the surfaces of those shapes that are sharp hulls."""
+    sharp = [one.shape for one in found if isinstance(one.shape, Convex) and one.shape.radius_m == 0.0]
+    return [Triangles.of(manifold3d().Manifold.hull_points(shape.vertices_m)) for shape in sharp]
 
 
 def _are_in(holes: Sequence[RoundHole], shapes: Sequence[Shape]) -> bool:
