@@ -62,7 +62,9 @@ class Part:
         """Return the part with the twin of others that are it together."""
         return replace(self, twin=_numbered(tuple(shape for part in parts for shape in part.twin)))
 
-    def bored(self, mouth: Vector, into: Vector, radius: float, depth: float, flare: tuple[float, float] = ()) -> Part:
+    def bored(
+        self, mouth: Vector, into: Vector, radius: float, depth: float, flare: tuple[float, float] | None = None
+    ) -> Part:
         """Return it with a hole in all of its shapes; ``flare``: how much wider its mouth is, and the angle."""
         way = np.array(into)
         removed, chamfer = bar(mouth, into, radius, depth), None
@@ -75,7 +77,7 @@ class Part:
         hole = Hole(1e-3 * radius, 1e-3 * depth, chamfer, names, pose)
         return replace(self - removed, twin=_numbered((*self.twin, hole)))
 
-    def rounded(self, radius: float, is_meant: Callable[[np.ndarray], bool] = lambda middle: True) -> Any:
+    def rounded(self, radius: float, is_meant: Callable[[np.ndarray], bool] = lambda _: True) -> Any:
         """Return the solid with those edges round whose middle is meant."""
         from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
 
@@ -84,7 +86,7 @@ class Part:
             made.Add(radius, edge)
         return made.Shape()
 
-    def chamfered(self, width: float, is_meant: Callable[[np.ndarray], bool] = lambda middle: True) -> Any:
+    def chamfered(self, width: float, is_meant: Callable[[np.ndarray], bool] = lambda _: True) -> Any:
         """Return the solid with those edges chamfered whose middle is meant."""
         from OCP.BRepFilletAPI import BRepFilletAPI_MakeChamfer
 

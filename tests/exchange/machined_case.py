@@ -6,7 +6,9 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
@@ -146,17 +148,27 @@ class Draw:
         return 0.0 if self.random is None else float(self.random.uniform(-most, most))
 
 
-CASES: dict[str, Callable[[], Case]] = {}
+CASES: dict[str, partial[Case]] = {}
 """All of them by their names, each built when it is asked for."""
 
 
 def machined(n_variants: int) -> Callable[[Callable[[Draw], Case]], Callable[[Draw], Case]]:
-    """Note a builder as so many cases."""
+    """Note a builder as so many cases; of a single one numbers are random."""
 
     def note(build: Callable[[Draw], Case]) -> Callable[[Draw], Case]:
-        for variant in range(n_variants):
-            name = build.__name__.replace("_", " ")
-            CASES[f"{name} {variant + 1}"] = lambda name=name, variant=variant: build(Draw(name, variant))
+        name = build.__name__.replace("_", " ")
+        for variant in range(n_variants) if n_variants > 1 else [1]:
+            CASES[f"{name} {variant + 1}"] = partial(_built, build, name, variant)
         return build
 
     return note
+
+
+def _built(build: Callable[[Draw], Case], name: str, variant: int) -> Case:
+    return build(Draw(name, variant))
+
+
+def cases_of(module: ModuleType) -> list[str]:
+    """Return the names of those that a module has, the last variant of each builder."""
+    last = {make.args[0]: name for name, make in CASES.items() if make.args[0].__module__ == module.__name__}
+    return list(last.values())
