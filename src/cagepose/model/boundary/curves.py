@@ -159,8 +159,8 @@ def _curve(
 def _is_straight(places_m: FloatArray, flat_m: float) -> bool:
     way = places_m[-1] - places_m[0]
     length = float(np.linalg.norm(way))
-    if length <= flat_m:
-        return False
+    if length <= flat_m or len(places_m) == 2:
+        return length > flat_m
     seen = places_m - places_m[0]
     along = seen @ way / length
     off = np.linalg.norm(seen - np.outer(along / length, way), axis=1)

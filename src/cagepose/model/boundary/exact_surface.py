@@ -15,7 +15,7 @@ import numpy as np
 from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.union.loops import Border, Loop, find_loops
 from cagepose.model.boundary.blocks import Block
-from cagepose.model.boundary.curves import ARC, Curve, curves_of, pieces_of
+from cagepose.model.boundary.curves import ARC, LINE, Curve, curves_of, pieces_of
 from cagepose.model.boundary.regions import FacePlanes, regions_of
 from cagepose.model.boundary.round_features import ball_of, circle_of, is_within_caps, side_of, tip_of
 from cagepose.model.boundary.surface_corners import corners_of
@@ -115,7 +115,24 @@ def surface_of(shape: Facets) -> ExactSurface:
         if not lost:
             break
         kept &= np.array([surface not in lost for surface in surfaces])
-    return found._replace(sines=[_sine_beside(vertices_m, curve, regions.surfaces) for curve in curves])
+    return found._replace(sines=_sines_beside(vertices_m, curves, regions.surfaces))
+
+
+def _sines_beside(vertices_m: FloatArray, curves: Sequence[Curve], surfaces: Sequence[Surface]) -> list[float]:
+    """Return what `_sine_beside` does of each curve; of the many short edges between flat facets, all at once."""
+    flat = np.array([surface.kind == PLANE for surface in surfaces], bool)
+    sines = np.zeros(len(curves))
+    sides = np.array([(curve.left, curve.right) for curve in curves], np.int64).reshape(-1, 2)
+    short = [k for k, curve in enumerate(curves) if curve.kind == LINE and len(curve.nodes) == 2]
+    short = [k for k in short if flat[sides[k]].all()]
+    if short:
+        normals = np.array([surface.axis for surface in surfaces])[sides[short]]
+        start, end = vertices_m[np.array([curves[k].nodes for k in short])].swapaxes(0, 1)
+        sines[short] = np.einsum("ij,ij->i", np.cross(normals[:, 0], normals[:, 1]), unit_rows(end - start))
+    for index in sorted(set(range(len(curves))) - set(short)):
+        sines[index] = _sine_beside(vertices_m, curves[index], surfaces)
+    found: list[float] = sines.tolist()
+    return found
 
 
 def _sine_beside(vertices_m: FloatArray, curve: Curve, surfaces: Sequence[Surface]) -> float:
