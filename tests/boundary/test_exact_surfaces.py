@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -82,6 +83,16 @@ def test_a_roller_lies_at_the_bottom_of_a_groove(radius, friction):
         assert found.verdict == "rests"
         away = np.linalg.norm(found.phases[-1].pose.position_m[[0, 2]])
         assert away == pytest.approx(0.005 - radius, abs=1e-11)
+
+
+def test_a_roller_that_ends_flush_with_a_groove_falls_into_it_in_few_steps():
+    """Its rims cross the arcs of the groove in one plane all the way down: 20 s, where each step is asked for that."""
+    roller = Cylinder(0.0049, 0.04, ALONG_Y, "roller")
+    made = scene([roller], [cradle()], Pose((0.0, 0.0, 0.005)))
+    began = time.process_time()
+    found = run(made)
+    assert time.process_time() - began < 5.0
+    assert found.phases[-1].pose.position_m == pytest.approx([0.0, 0.0, -1e-4], abs=1e-11)
 
 
 def test_the_edges_of_a_groove_hold_what_is_wider():

@@ -158,7 +158,8 @@ def _unknown_key(path: Path, known: list[str], homes: list[str], data: object, m
 def _unknown_shape(found: str, known: list[str], homes: list[str]) -> str:
     """For a key of a shape, most of which are the names of all shapes that there are."""
     others = [key for key in known if key not in KINDS]
-    holders = [home.rpartition(".")[2] for home in homes if home.startswith("object.shapes[i].")]
+    within = [f"object.shapes[i].{kind}" for kind in KINDS]
+    holders = [home.rpartition(".")[2] for home in homes if home in within]
     meant = f"it belongs within {_some_of(holders)}; " if holders else _close(found, known)
     hint = meant_by_key(found, known)
     told = meant if hint is None else _ended(hint)

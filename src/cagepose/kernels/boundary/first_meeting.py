@@ -401,8 +401,9 @@ def first_of_curved(
                 is_beside = is_beside_kept(i, j, meetings, met, touch_m)
                 is_grazing = abs(closing) <= slowest and search.near_m == 0.0 and not is_beside
                 is_passed = closing >= -slowest or is_beside
-            else:  # that of features next to them
+            else:  # that of features next to them; or circles that cross in one plane, as where parts are flush
                 is_passed = abs(closing) <= slowest and is_there(meetings, met, False, touch_m)
+                is_grazing = not is_passed and search.near_m == 0.0
         elif reaches_there and met.gap < 0.0:
             is_passed = is_passed or is_beside_kept(i, j, meetings, met, touch_m)
         if not is_held:
