@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterator
 from typing import Any
 
@@ -102,7 +101,7 @@ def _leaves(label: Any, place: Any, name: str) -> Iterator[tuple[str, Any]]:
 
 def _solid(solid: Any, most_fillets: int) -> Data:
     faces, mass = [*each("Face", solid)], moments_of(solid)
-    measures = {"volume": abs(mass.Mass()), **_measures(solid, faces, mass)}
+    measures = {"volume": abs(mass.Mass()), **_measures(solid, mass)}
     core = _rounded(faces, mass)
     if core is not None:
         return {**measures, **core}  # to make triangles of a ball takes 0.3 s
@@ -120,23 +119,20 @@ def _solid(solid: Any, most_fillets: int) -> Data:
     return found
 
 
-def _measures(solid: Any, faces: list[Any], mass: Any) -> Data:
-    """Return the ``center`` of a solid, its ``gyration``, inertia by volume about the center (3, 3), the ``low`` and
-    ``high`` corners of the box around it, and how many faces it has of each kind (``surfaces``).
+def _measures(solid: Any, mass: Any) -> Data:
+    """Return the ``center`` of a solid, its ``gyration``, inertia by volume about the center (3, 3), and the ``low``
+    and ``high`` corners of the box around it.
     """
     from OCP.Bnd import Bnd_Box
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.BRepBndLib import BRepBndLib
 
     box = Bnd_Box()
     BRepBndLib.AddOptimal_s(solid, box, False, False)
-    kinds = Counter(BRepAdaptor_Surface(face).GetType().name.removeprefix("GeomAbs_") for face in faces)
     return {
         "center": _xyz(mass.CentreOfMass()),
         "gyration": (_inertia(mass) / mass.Mass()).tolist(),
         "low": _xyz(box.CornerMin()),
         "high": _xyz(box.CornerMax()),
-        "surfaces": dict(kinds),
     }
 
 
