@@ -16,7 +16,6 @@ from cagepose.exchange.stl import MM_PER_M
 from cagepose.exchange.tolerances import SAME_AXES, VOLUME_NOT_CONVEX
 from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
-from cagepose.files.meshes.mesh_shapes import mesh_shapes
 from cagepose.files.meshes.pieces import MOST_CORNERS
 from cagepose.files.triples import text_of, triples
 from cagepose.model.pose import Pose
@@ -138,9 +137,8 @@ class GeomShapes:
         if scale.prod() <= 0.0:
             raise mesh_file.refused("is mirrored by its scale; mirror it in its file")
         given = Triangles(MM_PER_M * scale * surface.vertices, surface.faces)
-        mesh, said = mesh_file.sound(given, geom["label"], "mm")
-        found = mesh_shapes(mesh, geom["label"], "mm")
-        self.notes += [*said, *found.notes]
+        found = mesh_file.sound_shapes(given, geom["label"], "mm")
+        self.notes += found.notes
         of_file = place @ Pose(geom["mesh_position"], geom["mesh_quaternion"]).inverse()
         metres = [mesh_file.scaled(shape, 1.0 / MM_PER_M) for shape in found.shapes]
         return [METRES.shape(shape.moved(of_file @ shape.pose_body_shape)) for shape in metres]

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import os
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, cast
 
-from cagepose.files.meshes.mesh_file import refused, scaled
+from cagepose.files.meshes.mesh_file import refused, scaled, stamped
 from cagepose.files.meshes.mesh_shapes import MeshShapes
 from cagepose.files.progress import tell
 from cagepose.files.step.kept_shapes import KeptShape, KeptShapes, keep, kept
@@ -46,17 +45,8 @@ def read_step_shapes(path: Path, solid: str | None, name: str, *, fillets: bool 
     MissingExtraError
         What reads it is not installed.
     """
-    if "\0" in os.fspath(path):
-        raise refused("is not a file name; remove the unprintable character")
-    try:
-        found = path.stat()
-        return _shapes(os.fspath(path), found.st_mtime_ns, found.st_size, solid, name, fillets)
-    except FileNotFoundError:
-        raise refused("is no file; check the name and the folder") from None
-    except OSError as error:
-        raise refused(f"cannot be read ({error.strerror or error}); check its permissions") from None
-    finally:
-        tell("")
+    with stamped(path) as stamp:
+        return _shapes(*stamp, solid, name, fillets)
 
 
 @lru_cache(maxsize=64)
