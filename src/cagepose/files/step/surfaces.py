@@ -12,6 +12,9 @@ from cagepose.files.step.tolerances import SAME_OF_SIZE
 from cagepose.model.checks import FloatArray
 from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, Surface
 
+ASLANT = 0.9
+"""Cosine between axes that are asked no further whether they are one: to cross them takes ten times as long."""
+
 
 def surface_of_face(face: Any, corners: FloatArray) -> Surface | None:
     """Return the surface of a face, whose triangles have ``corners``, (n, 3, 3), counter-clockwise seen from outside;
@@ -87,7 +90,7 @@ def _are_one(one: Surface, other: Surface, size: float) -> bool:
     axis, along = np.array(one.axis), float(np.dot(one.axis, other.axis))
     if one.kind == SPHERE:
         return float(np.linalg.norm(between)) <= slack and abs(one.radius_m - other.radius_m) <= slack
-    if float(np.linalg.norm(np.cross(one.axis, other.axis))) > SAME_OF_SIZE:
+    if abs(along) < ASLANT or float(np.linalg.norm(np.cross(one.axis, other.axis))) > SAME_OF_SIZE:
         return False
     if one.kind == PLANE:
         return along > 0.0 and abs(float(between @ axis)) <= slack

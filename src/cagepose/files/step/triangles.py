@@ -89,6 +89,7 @@ def _shared(faces: list[Any], n_points: list[int], places: FloatArray) -> list[t
     from OCP.TopLoc import TopLoc_Location
 
     found, first_of_edges = list[tuple[int, int]](), dict[int, list[int]]()
+    apart = FARTHEST_APART * float(np.ptp(places, axis=0).max())
     for face, first in zip(faces, n_points, strict=False):
         place = TopLoc_Location()
         mesh = BRep_Tool.Triangulation_s(face, place)
@@ -104,7 +105,7 @@ def _shared(faces: list[Any], n_points: list[int], places: FloatArray) -> list[t
             if len(others) == len(nodes):
                 ways = nodes, nodes[::-1]
                 off = [np.abs(places[others] - places[way]).max() for way in ways]
-                if min(off) <= FARTHEST_APART * float(np.ptp(places, axis=0).max()):
+                if min(off) <= apart:
                     found += [
                         pair for pair in zip(others, ways[int(np.argmin(off))], strict=True) if pair[0] != pair[1]
                     ]
