@@ -10,9 +10,11 @@ import numpy as np
 
 from cagepose.files.extra import files_library
 from cagepose.files.meshes.manifolds import Triangles
+from cagepose.model.boundary.inexact import exact_faces
 from cagepose.model.checks import FloatArray
 from cagepose.model.facets import Facets
 from cagepose.model.hole import Hole
+from cagepose.model.pose import Pose
 from cagepose.model.shapes import Shape
 from cagepose.model.union import body_moments
 from cagepose.model.wording import counted
@@ -92,11 +94,15 @@ class ImportedPart(NamedTuple):
 
     @property
     def became(self) -> str:
-        """What the solid is here, such as "1 cylinder, 2 holes", or "1,312 facets"."""
+        """What the solid is here, such as "1 cylinder, 2 holes"; of facets how many of its faces are exact, such as
+        "12 planes, 4 cylinders, 380 facets".
+        """
         kinds = Counter(shape.kind for shape in self.shapes if not isinstance(shape, Facets))
-        n_facets = sum(len(shape.triangles) for shape in self.shapes if isinstance(shape, Facets))
         listed = [(number, kind, KINDS.get(kind, f"{kind}s")) for kind, number in kinds.items()]
-        return counted((n_facets, "facet", "facets"), *listed)
+        faces = [exact_faces(shape.moved(Pose())) for shape in self.shapes if isinstance(shape, Facets)]
+        exact = [found.in_words for found in faces if found.of_kinds]
+        n_facets = sum(found.n_facets for found in faces)
+        return ", ".join([*exact, *filter(None, [counted((n_facets, "facet", "facets"), *listed)])])
 
 
 def measures_of_shapes(shapes: Sequence[Shape]) -> Measures:
