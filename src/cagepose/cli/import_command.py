@@ -27,8 +27,8 @@ def import_command(
         Parameter(
             help="The body that is held, with all that hangs on it; left out: the one that moves freely. Of solids, one"
             " by its name, or all by what their names begin with before a /; left out: object. Without a FILE: a STEP,"
-            " STL, OBJ, PLY or GLB file, which stands where its own coordinates say, or FILE@x,y,z or"
-            " FILE@x,y,z,yaw,pitch,roll: turned by angles in degrees, then moved by millimetres."
+            " STL, OBJ, PLY or GLB file, or one of its solids as FILE#NAME, which stands where its own coordinates"
+            " say, or at @x,y,z or @x,y,z,yaw,pitch,roll behind it: turned by degrees, then moved by millimetres."
         ),
     ] = None,
     cage: Annotated[

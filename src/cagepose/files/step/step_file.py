@@ -10,6 +10,7 @@ from typing import Any, cast
 from cagepose.files.meshes.mesh_file import refused, scaled, stamped
 from cagepose.files.meshes.mesh_shapes import MeshShapes
 from cagepose.files.progress import tell
+from cagepose.files.solid_names import solids_named
 from cagepose.files.step.kept_shapes import KeptShape, KeptShapes, keep, kept
 from cagepose.files.step.solid_shapes import solid_shapes
 from cagepose.files.step.solids import read_step
@@ -66,14 +67,11 @@ def _solids(file: str, _changed: int, _n_bytes: int, fillets: bool) -> Data:
 
 
 def _of_solids(read: Data, wanted: str | None, name: str) -> KeptShapes:
-    solids = {
-        own: solid
-        for own, solid in named_solids(read).items()
-        if wanted is None or own == wanted or own.startswith(f"{wanted}/")
-    }
+    solids = named_solids(read)
     if not solids:
-        listed = few(list(named_solids(read)), 12)
-        raise refused(f"has no solid {wanted!r}; its solids: {listed}" if listed else "has no solid; export it as one")
+        raise refused("has no solid; export it as one")
+    if wanted is not None:
+        solids = {own: solids[own] for own in solids_named(wanted, solids)}
     notes = [f"left out: {few(read['out'], 12)}"] if read["out"] else []
     alone = len(solids) == 1
     made = [solid_shapes(name if alone else f"{name}/{own}", solid) for own, solid in solids.items()]
