@@ -94,19 +94,6 @@ def test_the_command_joins_files_at_places(tmp_path, monkeypatch, capsys):
     assert Path("mine.html").read_text() == "<p>mine"
 
 
-def test_a_page_about_a_model_has_its_notes(tmp_path, monkeypatch):
-    pytest.importorskip("mujoco")
-    monkeypatch.chdir(tmp_path)
-    body = '<body><freejoint/><geom type="sphere" size="0.05"/></body>'
-    Path("robot.xml").write_text(
-        f'<mujoco><worldbody><geom type="plane" size="1 1 1" pos="0 0 -1"/>{body}</worldbody></mujoco>'
-    )
-    assert main(["import", "robot.xml", "-o", "scene.yaml", "--report", "page.html"]) == 0
-    page = Path("page.html").read_text()
-    assert "what they measured there is not compared" in page
-    assert "is a plane; here, a box" in page
-
-
 @pytest.mark.usefixtures("in_this_process")
 def test_what_became_exact_is_counted_by_faces(tmp_path, monkeypatch, capsys):
     """A plate with two bores, a conical pocket and a groove that is a torus, which divides the top: 8 planes."""

@@ -119,6 +119,6 @@ def _measures_of_step(solid: Data, frame: Pose) -> Measures:
     return Measures(
         solid["volume"] / MM_PER_M**3,
         frame.transform(np.array(solid["center"]) / MM_PER_M),
-        np.ptp(frame.transform(corners / MM_PER_M), axis=0),
+        np.array([ends(frame.transform(corners / MM_PER_M), axis=0) for ends in (np.min, np.max)]),
         turn @ (np.array(solid["gyration"]) / MM_PER_M**2) @ turn.T,
     )
