@@ -5,21 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 
 from cagepose.errors import Key, Problem, SceneError, key_path
 from cagepose.files.build_loads import load_of
-from cagepose.files.meshes.mesh_file import read_mesh
-from cagepose.files.meshes.mesh_shapes import MeshShapes
 from cagepose.files.points_file import PointsTable
 from cagepose.files.schema import BoxModel, SceneModel
 from cagepose.files.schema_base import PoseModel
 from cagepose.files.schema_cage import CageBodyModel
 from cagepose.files.schema_shapes import CoefficientModel, MeshModel, ShapeModel
 from cagepose.files.schema_surfaces import SurfaceModel
-from cagepose.files.step import step_file
 from cagepose.files.triples import triples, whole_numbers, whole_triples
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.box import Box
@@ -35,6 +32,9 @@ from cagepose.model.scope import unknown_shapes
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Shape, Sphere
 from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, Surface, three
 from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT, Tolerances
+
+if TYPE_CHECKING:
+    from cagepose.files.meshes.mesh_shapes import MeshShapes
 
 Noun = TypeVar("Noun")
 Given = ParamSpec("Given")
@@ -214,6 +214,9 @@ class _Builder:
         return [shape.moved(pose @ shape.pose_body_shape) for shape in found.shapes]
 
     def body_in_file(self, path: Path, model: MeshModel, name: str) -> MeshShapes:
+        from cagepose.files.meshes.mesh_file import read_mesh  # 50 modules, which most scenes do not need
+        from cagepose.files.step import step_file
+
         if path.suffix.lower() not in step_file.SUFFIXES:
             if model.solid is not None:
                 raise SceneError(

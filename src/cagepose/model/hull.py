@@ -178,7 +178,7 @@ def _triangles(points: FloatArray, scaled: FloatArray, simplex: list[int]) -> li
         across.update({side: triangle for triangle in new for side in _sides(triangle)})
         outside.add(new, waiting)
 
-    add([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.setdiff1d(np.arange(len(scaled)), simplex, assume_unique=True))
+    add([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.setdiff1d(np.arange(len(scaled)), simplex))
     while (found := outside.farthest()) is not None:
         point, seed = found
         seen, reached, horizon = {seed}, [seed], []

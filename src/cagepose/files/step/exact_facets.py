@@ -46,6 +46,7 @@ def facets_on_surfaces(solid: dict[str, Any], name: str) -> OnSurfaces:
     flat = max(FLAT * size, SLACK * solid["off_surfaces"])
     shape = Facets(vertices, triangles, flat, None, name, surfaces, solid["on"])
     metres = scaled(shape, MM)  # as scenes have it, which find the same surface again
+    assert isinstance(metres, Facets)
     surface, faces = surface_of(metres), exact_faces(metres)
     facets, chains = max(solid["off_others"], off_surfaces(surface, metres) / MM), off_curves(surface) / MM
     notes = list[str]()

@@ -143,7 +143,7 @@ def flat_regions(
         normals[merged] = chosen
         offsets[merged] = np.einsum("ij,ij->i", chosen, spans[several]) / whole[several]
         by_size = np.argsort(-np.linalg.norm(total, axis=1), kind="stable")
-        order = np.concatenate([seeds[by_size], np.sort(np.setdiff1d(order, seeds, assume_unique=True))])
+        order = np.concatenate([seeds[by_size], np.setdiff1d(order, seeds)])
     return FlatRegions(found, normals[seeds], offsets[seeds], parts[seeds])
 
 
