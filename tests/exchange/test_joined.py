@@ -114,6 +114,8 @@ def test_what_became_exact_is_counted_by_faces(tmp_path, monkeypatch, capsys):
     assert f"<td>8 planes, 2 cylinders, 1 cone, {n_facets} facets</td>" in page
     assert f"note: 'part' has {n_facets} flat facets where it is no plane, cylinder, cone or ball" in out
     assert "mm off; exact: 8 planes, 2 cylinders, 1 cone" in out
+    (saved,) = load_scene("scene.yaml").cage.shapes  # whose numbers are not written by the library for YAML
+    assert int(n_facets.replace(",", "")) == (saved.on < 0).sum()
 
 
 def test_where_a_file_is_placed_is_its_name_and_numbers():
