@@ -58,7 +58,9 @@ def _row(part: ImportedPart) -> tuple[str, ...]:
 
 
 def _percent(share: float) -> str:
-    return "0" if abs(share) < ROUNDING_OF_MEASURES else f"{100.0 * share:+.2g} %"
+    if abs(share) < ROUNDING_OF_MEASURES:
+        return "0"
+    return f"{100.0 * share:+.2g} %" if abs(share) < 0.995 else f"{100.0 * share:+.0f} %"
 
 
 def _length(length_m: float, size_m: float) -> str:

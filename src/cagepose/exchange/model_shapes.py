@@ -124,7 +124,7 @@ class GeomShapes:
                 except SceneError as error:
                     unusable = error.problems[0].message
             off_m = self.off_hull(geom)
-            off = f", up to {MM_PER_M * off_m:.2g} mm off" if off_m > 0.0 else ""
+            off = f", about {MM_PER_M * off_m:.2g} mm off at most" if off_m > 0.0 else ""
             what = f"not convex: here, its hull, {share:.1%} of which is too much{off}"
             if unusable is not None:
                 what = f"its hull here{off}, as it {unusable}"
