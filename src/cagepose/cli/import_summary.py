@@ -19,7 +19,9 @@ MOST_ROWS = 24
 
 
 def print_summary(parts: Sequence[ImportedPart], weight: Weight | None) -> None:
-    """Print to standard output."""
+    """Print to standard output; nothing, where the source measures nothing."""
+    if not parts:
+        return
     from cagepose.errors import printable
     from cagepose.exchange.import_summary import HEADINGS, summary_rows, weight_words
 

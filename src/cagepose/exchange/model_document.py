@@ -120,6 +120,9 @@ class _Reader:
         parts, walls = (self.shapes.known(geoms, left_out) for geoms in (parts, walls))
         if not (parts and walls):
             self.refuse_nothing(of_object, of_cage, bool(left_out))
+        unknown = [geom["label"] for geom in (*parts, *walls) if geom["measures"] is None and geom["kind"] != "plane"]
+        if unknown:
+            self.notes.append(f"not compared with what they are here, as MuJoCo measures no volume: {few(unknown)}")
         self.in_scene = ModelSource(bodies, held, parts, walls, self.shapes.meshes, self.shapes.off_m)
         found: Data = {"name": beside.get("name") or Path(self.source).stem, "units": {"length": "m"}}
         of_part = [shape for geom in parts for shape in self.shapes.shapes(geom, self.place(geom, held), parts)]
