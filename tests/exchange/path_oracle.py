@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from cagepose import Box, Cone, Cylinder, Pose, Shape, Sphere
-from cagepose.files.step.fillets import each
+from cagepose.files.step.open_cascade import each
 from exchange.cad_parts import Level, Part, ball, bar, box, cone
 
 CHORDS = 90

@@ -101,7 +101,7 @@ def bracket() -> Any:
 def test_a_bracket_with_a_fillet_and_holes_is_its_walls_and_its_holes(read):
     """A rounding of r in a right corner leaves r (sqrt(2) - 1) of it: 2.07 mm of 5."""
     solid = cut(bracket(), pin((40, 20, -1), (0, 0, 1), 4.0, 20.0), pin((-1, 20, 35), (1, 0, 0), 3.0, 20.0))
-    scene, notes, _ = read(solid)
+    scene, notes, *_ = read(solid)
     assert sorted(hole.radius_m for hole in scene.object.holes) == pytest.approx([3e-3, 4e-3])
     assert len(scene.object.parts) == 2
     assert f"up to {5 * (math.sqrt(2) - 1):.2g} mm off; where something rests in one, make it a chamfer" in notes[0]
@@ -113,12 +113,12 @@ def test_fillets_that_meet_and_those_around_a_shaft_are_left_out(read):
     tray = cut(block((-40, -30, 0), (40, 30, 20)), block((-30, -20, 8), (30, 20, 21)))
     tray = rounded(tray, 5.0, lambda middle: abs(middle[0]) == 30.0 and abs(middle[1]) == 20.0)
     tray = rounded(tray, 2.0, lambda middle: middle[2] == TOP)
-    scene, notes, _ = read(tray)
+    scene, notes, *_ = read(tray)
     assert [type(part) for part in scene.object.parts] == [Box] * 5
     assert "'part' has 12 hollow roundings, of 5 mm at most" in notes[0]
     shaft = fused(pin((0, 0, 0), (0, 0, 1), 20.0, 10.0), pin((0, 0, 10), (0, 0, 1), 10.0, 40.0))
     shaft = rounded(shaft, 3.0, lambda middle: middle[2] == 10.0 and abs(middle[0]) == 10.0)
-    scene, notes, _ = read(shaft)
+    scene, notes, *_ = read(shaft)
     assert [type(part) for part in scene.object.parts] == [Cylinder] * 2
     assert notes[0].startswith("'part' has 1 hollow rounding, of 3 mm at most")
 
@@ -128,7 +128,7 @@ def test_holes_and_notches_are_no_fillets(read):
     slot = fused(block((-10, -4, -1), (10, 4, 30)), fused(*(pin((x, 0, -1), (0, 0, 1), 4.0, 31.0) for x in (-10, 10))))
     notch = pin((30, -30, 10), (0, 1, 0), 4.0, 60.0)
     solid = cut(block((-30, -20, 0), (30, 20, 10)), slot, notch, pin((-20, -12, -1), (0, 0, 1), 2.0, 20.0))
-    scene, notes, _ = read(solid)
+    scene, notes, *_ = read(solid)
     assert not any("hollow rounding" in note for note in notes)
     assert [part.kind for part in (*scene.object.parts, *scene.object.holes)] == ["facets"]
     assert run(scene).verdict == "rests"
@@ -137,7 +137,7 @@ def test_holes_and_notches_are_no_fillets(read):
 def test_round_edges_are_round(read):
     """Four quarters of a cylinder in the corners of a plate: its volume, less (4 - pi) r^2 of its face, to rounding."""
     plate = rounded(block((-30, -20, 0), (30, 20, 10)), 4.0, lambda middle: middle[2] == 5.0)
-    scene, notes, parts = read(plate)
+    scene, notes, parts, *_ = read(plate)
     (part,) = scene.object.parts
     assert sorted(surface.kind for surface in part.surfaces) == ["cylinder"] * 4 + ["plane"] * 6
     assert shape_moments(part).volume_m3 == pytest.approx(10e-9 * (2400.0 - (4.0 - math.pi) * 16.0), rel=1e-11)
@@ -147,7 +147,7 @@ def test_round_edges_are_round(read):
 
 def test_fillets_stay_unless_they_are_to_go(read):
     """A hollow rounding is a part of a bore: a rod of its radius lies in it, one of half of that in the corner."""
-    scene, notes, _ = read(bracket(), fillets=True)
+    scene, notes, *_ = read(bracket(), fillets=True)
     (part,) = scene.object.parts
     (fillet,) = [surface for surface in part.surfaces if surface.kind == "cylinder"]
     assert fillet.radius_m == pytest.approx(-5e-3, abs=1e-15)
@@ -158,7 +158,7 @@ def test_a_great_rounding_stays(read):
     """A cradle for a roller is no fillet that may be left out."""
     whole = fused(block((0, 0, 0), (60, 40, 8)), block((0, 0, 0), (8, 40, 50)))
     whole = rounded(whole, 30.0, lambda middle: middle[0] == 8.0 and middle[2] == TOP)
-    scene, notes, _ = read(whole)
+    scene, notes, *_ = read(whole)
     (part,) = scene.object.parts
     assert isinstance(part, Facets)
     assert [surface.radius_m for surface in part.surfaces if surface.is_round] == [pytest.approx(-0.03, abs=1e-15)]
@@ -168,13 +168,13 @@ def test_a_great_rounding_stays(read):
 def test_too_many_fillets_stay(read, monkeypatch):
     """Open CASCADE would take minutes, and the file be refused."""
     monkeypatch.setattr(fillets, "MOST_FACES", 0)
-    scene, notes, _ = read(bracket())
+    scene, notes, *_ = read(bracket())
     assert isinstance(scene.object.parts[0], Facets)
     assert not any("hollow rounding" in note for note in notes)
 
 
 def test_a_part_without_fillets_stays_what_it_is(read):
-    scene, notes, _ = read(block((-30, -20, 0), (30, 20, 10)))
+    scene, notes, *_ = read(block((-30, -20, 0), (30, 20, 10)))
     (box,) = scene.object.parts
     assert isinstance(box, Box)
     assert box.pose_body_shape.position_m == pytest.approx((0, 0, 0.005), abs=1e-12)
@@ -184,7 +184,7 @@ def test_a_part_without_fillets_stays_what_it_is(read):
 def test_a_hole_across_a_shaft_is_facets_of_the_right_volume(read):
     """Open CASCADE's triangles leave a band of the wall out where they have no corners within it."""
     shaft = cut(pin((0, 0, 0), (0, 0, 1), 2.5, 30.0), pin((-10, 0, 10), (1, 0, 0), 1.264, 20.0))
-    scene, _, _ = read(shaft)
+    scene, *_ = read(shaft)
     (part,) = scene.object.parts
     assert isinstance(part, Facets)
     assert shape_moments(part).volume_m3 == pytest.approx(564.782e-9, rel=1e-6)

@@ -172,7 +172,7 @@ def arm(tmp_path) -> Path:
 
 @pytest.mark.usefixtures("here")
 def test_a_foreign_model_is_read_and_what_it_loses_is_said(arm):
-    scene, notes, _ = imported.imported(str(arm))
+    scene, notes, *_ = imported.imported(str(arm))
     assert notes == (
         "joints stay where the model has them, of flap",
         "left out, as in the model they do not touch the cage: shell",
@@ -225,7 +225,7 @@ def test_a_plane_has_no_end_and_is_under_the_object(arm):
 
 @pytest.mark.usefixtures("here")
 def test_bodies_are_chosen_by_name(arm):
-    scene, notes, _ = imported.imported(str(arm), "flap", ["stand", "block"])
+    scene, notes, *_ = imported.imported(str(arm), "flap", ["stand", "block"])
     assert scene.object.element_names == ("tongue",)
     assert [str(shape.name) for shape in scene.cage.shapes] == ["geom 2"]  # it hangs on the block
     with pytest.raises(SceneFileError, match=r"has no body 'flop'; its bodies: stand, block, flap"):
@@ -239,7 +239,7 @@ def test_bodies_are_chosen_by_name(arm):
 @pytest.mark.usefixtures("here")
 def test_a_body_without_a_name_is_called_by_its_number(arm):
     arm.write_text(ARM.replace('name="flap" ', ""))
-    scene, _, _ = imported.imported(str(arm), "body 3")
+    scene, *_ = imported.imported(str(arm), "body 3")
     assert scene.object.element_names == ("tongue",)
     with pytest.raises(SceneFileError, match=r"its bodies: stand, block, body 3"):
         imported.imported(str(arm), "flap")
@@ -263,9 +263,8 @@ def test_a_mesh_that_is_not_convex_is_said(arm):
     inwards = np.vstack([WEDGE, (6, 5, 4)])  # the slanted side goes in to here
     sides = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 4), (2, 3, 4), (3, 1, 4)])
     (arm.parent / "meshes" / "wedge.stl").write_bytes(binary_stl(Mesh(inwards, sides)))
-    assert (
-        "the mesh 'tongue' is not convex: here, its hull, 48.3% of which is too much" in imported.imported(str(arm))[1]
-    )
+    notes = imported.imported(str(arm)).notes
+    assert any(note.startswith("the mesh 'tongue' is not convex: here, its hull, 48.3% of which is") for note in notes)
 
 
 BOMB = '<!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]><mujoco model="&b;"/>'
@@ -374,7 +373,8 @@ def test_the_command_writes_a_scene_that_runs(arm, monkeypatch, capsys):
     monkeypatch.chdir(arm.parent)
     assert main(["import", "arm.xml", "-o", "arm.yaml"]) == 0
     out = capsys.readouterr().out
-    assert out.startswith("wrote arm.yaml: Object: 1 box, 2 shapes, 3 kg; Cage: 2 shapes\nnote: joints stay")
+    assert out.startswith("wrote arm.yaml: Object: 1 box, 2 shapes, 3 kg; Cage: 2 shapes\n\npart ")
+    assert "\nnote: joints stay" in out
     assert main(["run", "arm.yaml"]) == 0
     assert main(["import", "arm.xml", "-o", "arm.yaml"]) == 0  # over its own file
     Path("mine.yaml").write_text("name: mine")

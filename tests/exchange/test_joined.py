@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +16,7 @@ from cagepose.exchange.imported import imported
 from cagepose.exchange.joined import PlacedFile, joined
 from cagepose.exchange.step import step_solid
 from cagepose.exchange.step_writer import write_here
+from exchange import cad_parts
 from exchange.poses_apart import apart
 
 pytest.importorskip("OCP")
@@ -91,17 +94,28 @@ def test_the_command_joins_files_at_places(tmp_path, monkeypatch, capsys):
     assert Path("mine.html").read_text() == "<p>mine"
 
 
-def test_a_page_about_a_model_has_its_notes(tmp_path, monkeypatch):
-    pytest.importorskip("mujoco")
+@pytest.mark.usefixtures("in_this_process")
+def test_what_became_exact_is_counted_by_faces(tmp_path, monkeypatch, capsys):
+    """A plate with two bores, a conical pocket and a groove that is a torus, which divides the top: 8 planes."""
     monkeypatch.chdir(tmp_path)
-    body = '<body><freejoint/><geom type="sphere" size="0.05"/></body>'
-    Path("robot.xml").write_text(
-        f'<mujoco><worldbody><geom type="plane" size="1 1 1" pos="0 0 -1"/>{body}</worldbody></mujoco>'
-    )
-    assert main(["import", "robot.xml", "-o", "scene.yaml", "--report", "page.html"]) == 0
-    page = Path("page.html").read_text()
-    assert "what they measured there is not compared" in page
-    assert "is a plane; here, a box" in page
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeTorus
+
+    part = cad_parts.box((-20, -20, -10), (20, 20, 0)) - cad_parts.bar((-30, 12, -5), (1, 0, 0), 2, 60)
+    part -= cad_parts.bar((0, -15, -12), (0, 0, 1), 2, 14)
+    part -= cad_parts.cone((14, -14, 0), (0, 0, -1), 3, 1, 4)
+    solid = BRepAlgoAPI_Cut(part.solid, BRepPrimAPI_MakeTorus(5.0, 1.0).Shape()).Shape()
+    cad_parts.write_step(replace(part, solid=solid), tmp_path / "part.step")
+    pin(tmp_path)
+    files = ["--object", "pin.step@0,0,50", "--cage", "part.step"]
+    assert main(["import", *files, "-o", "scene.yaml", "--report", "page.html"]) == 0
+    out, page = capsys.readouterr().out, Path("page.html").read_text()
+    (n_facets,) = re.findall(r"part  +cage  +8 planes, 2 cylinders, 1 cone, ([\d,]+) facets", out)
+    assert f"<td>8 planes, 2 cylinders, 1 cone, {n_facets} facets</td>" in page
+    assert f"note: 'part' has {n_facets} flat facets where it is no plane, cylinder, cone or ball" in out
+    assert "mm off; exact: 8 planes, 2 cylinders, 1 cone" in out
+    (saved,) = load_scene("scene.yaml").cage.shapes  # whose numbers are not written by the library for YAML
+    assert int(n_facets.replace(",", "")) == (saved.on < 0).sum()
 
 
 def test_where_a_file_is_placed_is_its_name_and_numbers():
@@ -111,9 +125,29 @@ def test_where_a_file_is_placed_is_its_name_and_numbers():
     assert found.file == "logo@2x.step"
     assert found.pose.position_m.tolist() == [0.001, -0.002, 0.03]
     assert found.pose.transform(np.array([[1.0, 0.0, 0.0]]))[0] == pytest.approx([0.001, 0.998, 0.03])
+    assert PlacedFile.of("asm#2.step#arm/1#a") == PlacedFile("asm#2.step", solid="arm/1#a")
+    assert PlacedFile.of("no.txt#pin").file == "no.txt#pin"
+    found = PlacedFile.of("a.STEP#pin@2@0,0,5")
+    assert (found.file, found.solid, found.pose.position_m[2]) == ("a.STEP", "pin@2", 0.005)
     for numbers in ("1,2", "1,2,3,4", "1,,3", "1,2,1e999"):
         with pytest.raises(SceneFileError, match=r"pin.step: is placed at .*; give x,y,z in mm, or x,y,z,yaw,pitch"):
             PlacedFile.of(f"pin.step@{numbers}")
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_solids_of_one_file_are_chosen_by_name_and_placed(tmp_path, monkeypatch, capsys):
+    """Of a pin, a plate and a spare in one file the pin comes to rest in the hole of the plate, 8 mm deep."""
+    monkeypatch.chdir(tmp_path)
+    step(tmp_path, "all.step", ("pin", PIN, []), ("plate", PLATE, [HOLE]), ("spare", Box((0.3, 0.3, 0.3)), []))
+    command = ["import", "--object", "all.step#pin@0,0,5", "--cage", "all.step#plate", "-o", "scene.yaml"]
+    assert main(command) == 0
+    assert "note: all.step: solids left out: spare" in capsys.readouterr().out
+    scene = load_scene("scene.yaml")
+    assert (scene.name, [part.name for part in scene.cage.shapes]) == ("pin in plate", ["plate"])
+    assert run(scene).pose.position_m[2] == pytest.approx(-0.008, abs=1e-9)
+    command[2] = "all.step#pen"
+    assert main(command) == 2
+    assert "all.step: has no solid 'pen'; its solids: pin, plate, spare" in capsys.readouterr().err
 
 
 @pytest.mark.usefixtures("in_this_process")
@@ -127,7 +161,7 @@ def test_a_file_alone_is_told_how_to_be_joined(tmp_path, monkeypatch, capsys):
     assert main(["import", "-o", "scene.yaml"]) == 2
     assert "import needs a FILE, or --object FILE and --cage FILE, to join files" in capsys.readouterr().err
     assert main(["import", "--object", "pin.step", "--cage", "robot.xml", "-o", "scene.yaml"]) == 2
-    assert "robot.xml: is none of the files that can be joined" in capsys.readouterr().err
+    assert "robot.xml: is a robot model, which cannot be joined with files; give it what it" in capsys.readouterr().err
     assert main(["import", "--object", "pin.step", "--cage", "none.stl", "-o", "scene.yaml"]) == 2
     assert "none.stl: is no file; check the name and the folder" in capsys.readouterr().err
 

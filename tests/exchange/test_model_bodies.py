@@ -91,7 +91,7 @@ def test_jaws_stay_bodies_that_hold_the_cube_as_soon_as_they_press(gripper, tmp_
     """By hand: closed, they let it go 0.2 mm to either side and drop; with 20 N each and a friction of 0.3 they
     hold its 0.064 kg, and without friction no force does.
     """
-    scene, notes, _ = imported(str(gripper), keyframe="closed")
+    scene, notes, *_ = imported(str(gripper), keyframe="closed")
     assert [body.name for body in scene.cage.bodies] == ["left", "right"]
     assert scene.cage.element_names == ("left/box", "right/box")
     assert "bodies of the cage that no phase drives stand still: left, right" in notes
@@ -157,11 +157,11 @@ def test_pairs_are_those_of_mujoco(option, tmp_path):
 
 def test_what_cannot_touch_the_object_is_not_in_its_cage(tmp_path):
     source = written(tmp_path, contacts_dot_xml=CONTACTS.format(option=""))
-    scene, notes, _ = imported(str(source), "door")
+    scene, notes, *_ = imported(str(source), "door")
     assert scene.object.element_names == ("door", "knob", "latch")
     assert set(scene.cage.element_names) == {"frame", "arm/arm", "box/box", "floor", "shade/shade"}
     assert any("touch some parts of the object only: here, all" in note for note in notes)
-    scene, notes, _ = imported(str(source), "shade", ["door"])
+    scene, notes, *_ = imported(str(source), "shade", ["door"])
     assert "latch/latch" in scene.cage.element_names
     assert "left out, as in the model they do not touch the object: door, knob" in notes
     with pytest.raises(SceneFileError, match="lets no shape of the object touch one of the cage"):
@@ -185,7 +185,7 @@ BURIED = """<body name="cube" pos="0 0 {z}"><freejoint/><geom type="box" size="0
 
 def test_an_object_that_is_hardly_in_its_cage_is_lifted_out(tmp_path):
     """As models have it that were settled in MuJoCo: 0.3 mm below the top of a table, at z = 100 mm."""
-    scene, notes, _ = imported(str(written(tmp_path, cube_dot_xml=mjcf(BURIED.format(z=0.1197)))))
+    scene, notes, *_ = imported(str(written(tmp_path, cube_dot_xml=mjcf(BURIED.format(z=0.1197)))))
     assert "the object starts 0.3003 mm higher, as it is in 'table' there" in notes
     assert scene.left_out == ()
     assert run(scene).pose.position_m[2] == pytest.approx(0.12, abs=1e-9)
@@ -248,7 +248,7 @@ def test_too_many_shapes_are_told_by_their_number(tmp_path):
 def test_inertia_that_no_body_has_becomes_one(tmp_path):
     inertial = '<inertial pos="0 0 0" mass="2" diaginertia="1 1 7"/>'
     cube = f'<body name="cube" pos="0 0 1"><freejoint/>{inertial}<geom type="box" size="1 1 1"/></body>'
-    scene, notes, _ = imported(str(written(tmp_path, cube_dot_xml=mjcf(cube))))
+    scene, notes, *_ = imported(str(written(tmp_path, cube_dot_xml=mjcf(cube))))
     assert "the moments of inertia of cube are none of any body: here, their mean" in notes
     assert scene.object.mass_kg == 2.0
     assert np.diag(scene.object.inertia_kg_m2) == pytest.approx([3.0, 3.0, 3.0])

@@ -201,7 +201,7 @@ def test_words_of_older_versions_do_not_matter_where_they_are_not_of_bodies(tmp_
     <size njmax="500" nconmax="100"/><visual><old/></visual><actuator><motor joint="none" old="1"/></actuator>
     <worldbody><geom name="floor" type="plane" size="1 1 1"/>{}</worldbody>
     <keyframe><key name="up" qpos="0 0 2 1 0 0 0" ctrl="0.5"/></keyframe></mujoco>"""
-    scene, notes, _ = imported(str(written(tmp_path, old_dot_xml=old.format(BALL))), keyframe="up")
+    scene, notes, *_ = imported(str(written(tmp_path, old_dot_xml=old.format(BALL))), keyframe="up")
     assert scene.object.pose_world_object.position_m[2] == 2.0
     assert "loads: the weight alone, with a gravity of (0, 0, -3) m/s^2" in notes
 

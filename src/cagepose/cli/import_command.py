@@ -27,8 +27,8 @@ def import_command(
         Parameter(
             help="The body that is held, with all that hangs on it; left out: the one that moves freely. Of solids, one"
             " by its name, or all by what their names begin with before a /; left out: object. Without a FILE: a STEP,"
-            " STL, OBJ, PLY or GLB file, which stands where its own coordinates say, or FILE@x,y,z or"
-            " FILE@x,y,z,yaw,pitch,roll: turned by angles in degrees, then moved by millimetres."
+            " STL, OBJ, PLY or GLB file, or one of its solids as FILE#NAME, which stands where its own coordinates"
+            " say, or at @x,y,z or @x,y,z,yaw,pitch,roll behind it: turned by degrees, then moved by millimetres."
         ),
     ] = None,
     cage: Annotated[
@@ -61,7 +61,9 @@ def import_command(
     report: Annotated[
         FileName | None,
         FILE,
-        Parameter(help="Page to write as well, such as report.html: what became of each solid, with pictures of both."),
+        Parameter(
+            help="Page to write as well, such as report.html: what became of each solid or body, with pictures of both."
+        ),
     ] = None,
 ) -> int:
     """Read a model, or join files of solids, write it as a scene, and say what is not in it as it was."""
@@ -89,7 +91,7 @@ def import_command(
         return 2
     contents = f"{found.scene.object!r} {found.scene.cage!r}".replace("<", "").replace(">", ";").rstrip(";")
     sys.stdout.write(printable(f"wrote {out}: {contents}") + "\n")
-    print_summary(found.parts)
+    print_summary(found.parts, found.weight)
     sys.stdout.write("".join(printable(f"note: {note}") + "\n" for note in found.notes))
     if report is not None:
         from cagepose.views.import_page import write_import_page

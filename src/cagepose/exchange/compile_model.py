@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from cagepose.errors import SceneError, SceneFileError
+from cagepose.exchange.model_measures import geom_measures, mesh_arrays, mesh_text, subtree_weight
 from cagepose.exchange.model_pose import set_pose
 from cagepose.exchange.model_text import ModelText
 from cagepose.files.own_process import answer, ask
@@ -155,6 +156,7 @@ def _document(mujoco: Any, model: Any, data: Any) -> dict[str, Any]:
     kinds = {int(getattr(mujoco.mjtGeom, f"mjGEOM_{kind.upper()}")): kind for kind in KINDS}
     free = {int(model.jnt_bodyid[i]) for i in range(model.njnt) if model.jnt_type[i] == mujoco.mjtJoint.mjJNT_FREE}
     jointed = {int(body) for body in model.jnt_bodyid}
+    mujoco.mj_crb(model, data)
     bodies = [
         {
             "name": model.body(body).name,
@@ -167,10 +169,16 @@ def _document(mujoco: Any, model: Any, data: Any) -> dict[str, Any]:
             "mass": float(model.body_mass[body]) if model.body_mass[body] > 2.0 * LEAST_MASS_KG else 0.0,
             "center": model.body_ipos[body].tolist(),
             "inertia": _inertia(mujoco, model, body),
+            "subtree": subtree_weight(model, data, body),
         }
         for body in range(model.nbody)
     ]
-    geoms = [{"number": geom, **_geom(model, geom, kinds)} for geom in range(model.ngeom)]
+    closed = {mesh: _is_closed(model, model.mesh(mesh).name) for mesh in range(model.nmesh)}
+    measured = geom_measures(mujoco, model, closed)
+    geoms = [
+        {"number": geom, **_geom(model, geom, kinds, closed), "measures": measures}
+        for geom, measures in enumerate(measured)
+    ]
     for kind, found in (("body", bodies), ("geom", geoms)):
         for number, one in enumerate(found):
             if not np.isfinite([*one["position"], *one["quaternion"]]).all():
@@ -180,6 +188,7 @@ def _document(mujoco: Any, model: Any, data: Any) -> dict[str, Any]:
     return {
         "bodies": bodies,
         "geoms": geoms,
+        "meshes": {model.mesh(mesh).name: mesh_text(model, mesh) for mesh in range(model.nmesh)},
         "gravity": model.opt.gravity.tolist(),
         "filters_parents": bool(filters_parents),
         "excluded": [[int(one) >> 16, int(one) & 0xFFFF] for one in model.exclude_signature],
@@ -197,7 +206,7 @@ def _inertia(mujoco: Any, model: Any, body: int) -> list[list[float]]:
     return rows
 
 
-def _geom(model: Any, geom: int, kinds: dict[int, str]) -> dict[str, Any]:
+def _geom(model: Any, geom: int, kinds: dict[int, str], closed: dict[int, bool]) -> dict[str, Any]:
     name, is_flat, _ = model.geom(geom).name.partition(FLAT_MARK)
     found = {
         "name": name,
@@ -213,16 +222,15 @@ def _geom(model: Any, geom: int, kinds: dict[int, str]) -> dict[str, Any]:
     }
     mesh = int(model.geom_dataid[geom])
     if found["kind"] == "mesh" and mesh >= 0:
-        first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
-        vertices = model.mesh_vert[first : first + count].astype(np.float64)
-        faces = model.mesh_face[model.mesh_faceadr[mesh] :][: model.mesh_facenum[mesh]]
+        corners, faces = mesh_arrays(model, mesh)
+        vertices = corners.astype(np.float64)
         path = int(model.mesh_pathadr[mesh])
         found["mesh"] = model.mesh(mesh).name
         found["file"] = None if path < 0 else model.paths[path:].partition(b"\0")[0].decode()
         found["scale"] = model.mesh_scale[mesh].tolist()
         found["mesh_position"], found["mesh_quaternion"] = model.mesh_pos[mesh].tolist(), model.mesh_quat[mesh].tolist()
-        found["is_closed"] = _is_closed(model, model.mesh(mesh).name)
-        found["vertices"] = vertices[_corners_of_hull(model, mesh, count)].tolist()
+        found["is_closed"] = closed[mesh]
+        found["vertices"] = vertices[_corners_of_hull(model, mesh, len(vertices))].tolist()
         a, b, c = np.moveaxis(vertices[faces], 1, 0)
         found["volume"] = float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
     return found

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from cagepose.errors import FileProblem, Problem, SceneFileError
 from cagepose.exchange.imported_part import ImportedPart
 from cagepose.exchange.model_document import Chosen, Data, model_document
+from cagepose.exchange.model_parts import Weight
 from cagepose.exchange.solids_document import SceneData, solids_document
 from cagepose.exchange.source_solids import SOLIDS
 from cagepose.files.scene_file import SceneText
@@ -18,11 +19,14 @@ from cagepose.model.scene import Scene
 
 
 class Import(NamedTuple):
-    """A scene, and what of the file is not in it as it was, in sentences; and of solids, what each was and is."""
+    """A scene, and what of the file is not in it as it was, in sentences; what each solid, or each body of a model, was
+    and is; and of a model what its object weighs.
+    """
 
     scene: Scene
     notes: tuple[str, ...]
     parts: tuple[ImportedPart, ...] = ()
+    weight: Weight | None = None
 
 
 def imported(
@@ -65,13 +69,13 @@ def imported(
     check_name(source)
     try:
         if is_solids:
-            data = solids_document(source, object_name, cage_names, fillets=fillets)
-        else:
-            data = SceneData(*model_document(source, Chosen(object_name, cage_names, root, keyframe, qpos)))
+            return import_of(solids_document(source, object_name, cage_names, fillets=fillets), source)
+        data = model_document(source, Chosen(object_name, cage_names, root, keyframe, qpos))
     except OSError as error:
         message = f"cannot be read ({error.strerror or error}); check the names of its files and their permissions"
         raise SceneFileError([FileProblem((), message, source)]) from None
-    return import_of(data, source)
+    found = import_of(SceneData(data.document, data.notes), source)
+    return found._replace(parts=data.source.parts(found.scene), weight=data.source.weight(found.scene))
 
 
 def check_name(source: str) -> None:

@@ -10,15 +10,17 @@ import numpy as np
 
 from cagepose.files.extra import files_library
 from cagepose.files.meshes.manifolds import Triangles
+from cagepose.model.boundary.inexact import exact_faces
 from cagepose.model.checks import FloatArray
 from cagepose.model.facets import Facets
 from cagepose.model.hole import Hole
+from cagepose.model.pose import Pose
 from cagepose.model.shapes import Shape
 from cagepose.model.union import body_moments
 from cagepose.model.wording import counted
 
-KINDS = {"box": "boxes", "convex": "convex hulls"}
-"""Kinds of shapes whose plural has more than an s, or other words."""
+KINDS = {"box": ("box", "boxes"), "convex": ("convex hull", "convex hulls")}
+"""Kinds of shapes that have other words, or more than an s in their plural."""
 
 
 class Measures(NamedTuple):
@@ -30,16 +32,22 @@ class Measures(NamedTuple):
         Cubic metres.
     center_m
         The middle of the volume, (3,), metres.
-    size_m
-        The sides of the box around it, (3,), metres.
+    limits_m
+        The least and greatest coordinates, (2, 3), metres.
     gyration_m2
         Inertia by mass at uniform density, about the center, (3, 3), metres squared.
     """
 
     volume_m3: float
     center_m: FloatArray
-    size_m: FloatArray
+    limits_m: FloatArray
     gyration_m2: FloatArray
+
+    @property
+    def size_m(self) -> FloatArray:
+        """The sides of the box around it, (3,), metres."""
+        sides: FloatArray = self.limits_m[1] - self.limits_m[0]
+        return sides
 
 
 class ImportedPart(NamedTuple):
@@ -92,11 +100,15 @@ class ImportedPart(NamedTuple):
 
     @property
     def became(self) -> str:
-        """What the solid is here, such as "1 cylinder, 2 holes", or "1,312 facets"."""
+        """What the solid is here, such as "1 cylinder, 2 holes"; of facets how many of its faces are exact, such as
+        "12 planes, 4 cylinders, 380 facets".
+        """
         kinds = Counter(shape.kind for shape in self.shapes if not isinstance(shape, Facets))
-        n_facets = sum(len(shape.triangles) for shape in self.shapes if isinstance(shape, Facets))
-        listed = [(number, kind, KINDS.get(kind, f"{kind}s")) for kind, number in kinds.items()]
-        return counted((n_facets, "facet", "facets"), *listed)
+        listed = [(number, *KINDS.get(kind, (kind, f"{kind}s"))) for kind, number in kinds.items()]
+        faces = [exact_faces(shape.moved(Pose())) for shape in self.shapes if isinstance(shape, Facets)]
+        exact = [found.in_words for found in faces if found.of_kinds]
+        n_facets = sum(found.n_facets for found in faces)
+        return ", ".join([*exact, *filter(None, [counted((n_facets, "facet", "facets"), *listed)])])
 
 
 def measures_of_shapes(shapes: Sequence[Shape]) -> Measures:
@@ -109,7 +121,7 @@ def measures_of_shapes(shapes: Sequence[Shape]) -> Measures:
     return Measures(
         found.volume_m3,
         found.centroid_m,
-        limits[:, 1].max(axis=0) - limits[:, 0].min(axis=0),
+        np.array([limits[:, 0].min(axis=0), limits[:, 1].max(axis=0)]),
         np.trace(second) * np.eye(3) - second,
     )
 
@@ -129,6 +141,19 @@ def measures_of_mesh(surface: Triangles) -> Measures:
     return Measures(
         float(found["volume"]) * size**3,
         np.array(found["center_mass"]) * size + middle,
-        np.ptp(surface.vertices, axis=0),
+        np.array([surface.vertices.min(axis=0), surface.vertices.max(axis=0)]),
         np.array(found["inertia"]) / float(found["mass"]) * size**2,
     )
+
+
+def together(parts: Sequence[Measures]) -> Measures:
+    """Return what bodies measure as one; what some of them share counts for each."""
+    volume = sum(part.volume_m3 for part in parts)
+    center: FloatArray = np.sum([part.volume_m3 / volume * part.center_m for part in parts], axis=0)
+    gyration = np.zeros((3, 3))
+    for part in parts:
+        arm = part.center_m - center
+        about = part.gyration_m2 + float(arm @ arm) * np.eye(3) - np.outer(arm, arm)
+        gyration += part.volume_m3 / volume * about
+    limits = np.array([part.limits_m for part in parts])
+    return Measures(volume, center, np.array([limits[:, 0].min(axis=0), limits[:, 1].max(axis=0)]), gyration)

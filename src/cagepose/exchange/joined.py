@@ -17,17 +17,19 @@ import numpy as np
 from cagepose.errors import FileProblem, SceneError, SceneFileError
 from cagepose.exchange.imported import Import, check_name, import_of
 from cagepose.exchange.imported_part import ImportedPart
+from cagepose.exchange.model_text import SUFFIXES as MODELS
 from cagepose.exchange.solids_document import METRES, SceneData, with_weight_alone
 from cagepose.exchange.solids_note import read_solids_note
 from cagepose.exchange.source_solids import SOLIDS, SourceSolid, source_solids
 from cagepose.exchange.stl import MM_PER_M
 from cagepose.files.meshes.mesh_file import refused
 from cagepose.files.progress import tell
+from cagepose.files.solid_names import SHOWN, solids_named
 from cagepose.files.step.reader import UNNAMED
 from cagepose.files.units import to_metres
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
-from cagepose.model.wording import coordinates
+from cagepose.model.wording import coordinates, few
 
 Data = dict[str, Any]
 
@@ -35,17 +37,35 @@ READERS = 2
 """Files that are read at once; each may take 2 GiB."""
 PLACED = re.compile(r"(.+)@([-+.,\deE ]+)", re.DOTALL)
 """A file and where it is, as the command line has it."""
+WITHIN = re.compile(rf"(.+?(?:{'|'.join(map(re.escape, SOLIDS))}))#(.+)", re.DOTALL | re.IGNORECASE)
+"""A file and which of its solids is meant."""
+MODEL = (
+    "is a robot model, which cannot be joined with files; give it what it holds as a body of its own, a mesh on a free"
+    " joint, and import it alone, or join the meshes that it names"
+)
 
 
 class PlacedFile(NamedTuple):
-    """A file, and where what it holds is in the world: left out, where its own coordinates say."""
+    """A file, and where what it holds is in the world.
+
+    Attributes
+    ----------
+    file
+        Its name.
+    pose
+        Left out: where its own coordinates say.
+    solid
+        The one that is meant, or what the names of some begin with before a "/"; None: all.
+    """
 
     file: str
     pose: Pose = Pose()
+    solid: str | None = None
 
     @classmethod
     def of(cls, text: str) -> Self:
-        """Return what "FILE", "FILE@x,y,z" or "FILE@x,y,z,yaw,pitch,roll" says, in millimetres and degrees.
+        """Return what "FILE", "FILE@x,y,z" or "FILE@x,y,z,yaw,pitch,roll" says, in millimetres and degrees;
+        "FILE#NAME" in place of the file says which of its solids.
 
         Raises
         ------
@@ -53,8 +73,10 @@ class PlacedFile(NamedTuple):
             Other numbers behind the @.
         """
         found = PLACED.fullmatch(text)
+        named = WITHIN.fullmatch(text if found is None else found[1])
+        file, solid = (named[1], named[2]) if named else (text if found is None else found[1], None)
         if found is None:
-            return cls(text)
+            return cls(file, solid=solid)
         try:
             numbers = [float(number) for number in found[2].split(",")]
         except ValueError:
@@ -63,12 +85,20 @@ class PlacedFile(NamedTuple):
             message = f"is placed at {found[2]!r}; give x,y,z in mm, or x,y,z,yaw,pitch,roll in mm and deg"
             raise SceneFileError([FileProblem((), message, found[1])])
         turn = [math.radians(angle) for angle in numbers[3:]] or None
-        return cls(found[1], Pose(to_metres(numbers[:3], "mm"), euler_zyx=turn))
+        return cls(file, Pose(to_metres(numbers[:3], "mm"), euler_zyx=turn), solid)
+
+    def __str__(self) -> str:
+        return self.file if self.solid is None else f"{self.file}#{self.solid}"
+
+    @property
+    def title(self) -> str:
+        """What it is called where it gives a scene its name."""
+        return self.solid or Path(self.file).stem
 
 
 def joined(held: PlacedFile, cage: Sequence[PlacedFile], *, fillets: bool = True) -> Import:
-    """Read files of solids (STEP, STL, OBJ, PLY, GLB), each all of what it holds; what takes seconds is told, see
-    `cagepose.files.progress`.
+    """Read files of solids (STEP, STL, OBJ, PLY, GLB), each all of what it holds, or some by name; what takes seconds
+    is told, see `cagepose.files.progress`.
 
     Parameters
     ----------
@@ -82,7 +112,7 @@ def joined(held: PlacedFile, cage: Sequence[PlacedFile], *, fillets: bool = True
     Raises
     ------
     SceneFileError
-        Files that cannot be used, or a scene that cannot be right.
+        Files that cannot be used, names that no solids have, or a scene that cannot be right.
     MissingExtraError
         What reads one of them is not installed.
     """
@@ -100,7 +130,7 @@ def _reach(parts: Sequence[ImportedPart], placed: PlacedFile, body: str) -> File
     solid = [shape for part in parts if part.body == body for shape in part.shapes if not isinstance(shape, Hole)]
     limits = MM_PER_M * np.array([shape.moved(pose @ shape.pose_body_shape).limits_m() for shape in solid])
     low, high = coordinates(limits[:, 0].min(axis=0), 5), coordinates(limits[:, 1].max(axis=0), 5)
-    remedy = f"stand elsewhere with --{body} {quote(placed.file + '@x,y,z')}"
+    remedy = f"stand elsewhere with --{body} {quote(f'{placed}@x,y,z')}"
     return FileProblem((), f"is of the {body}, which reaches from {low} to {high} mm; let it {remedy}", placed.file)
 
 
@@ -115,6 +145,7 @@ class _Joiner:
     def __init__(self, held: PlacedFile, cage: Sequence[PlacedFile]) -> None:
         self.held, self.cage = held, cage
         self.names: set[str] = set()
+        self.used: set[int] = set()
 
     def data(self, *, fillets: bool) -> SceneData:
         files = list(dict.fromkeys([self.held.file, *(placed.file for placed in self.cage)]))
@@ -126,8 +157,9 @@ class _Joiner:
         finally:
             tell("")
         notes = [f"{Path(file).name}: {note}" for file in files for note in read[file].notes]
-        notes += [note for part in (*parts, *walls) for note in part.notes]
-        found: Data = {"name": f"{Path(self.held.file).stem} in {Path(self.cage[0].file).stem}"}
+        left = [f"{Path(file).name}: solids left out: {names}" for file in files if (names := self.left(read[file]))]
+        notes += [*left, *(note for part in (*parts, *walls) for note in part.notes)]
+        found: Data = {"name": f"{self.held.title} in {self.cage[0].title}"}
         found["units"] = {"length": "m"}
         found["object"] = {"shapes": _shapes(parts), "pose": METRES.pose(self.held.pose)}
         found["cage"] = {"shapes": _shapes(walls)}
@@ -135,14 +167,25 @@ class _Joiner:
 
     def parts(self, body: str, placed: PlacedFile, read: dict[str, _Read], frame: Pose) -> list[ImportedPart]:
         """Return what the solids of a file are in a body."""
-        path, solids = Path(placed.file), read[placed.file].solids
+        solids = read[placed.file].solids
         with _problems_of(placed.file):
-            return [solid.part(body, self.name(solid, path, len(solids) == 1), frame) for solid in solids]
+            if placed.solid is not None:
+                names = solids_named(placed.solid, (solid.name for solid in solids))
+                solids = [solid for solid in solids if solid.name in names]
+            self.used.update(map(id, solids))
+            return [solid.part(body, self.name(solid, placed, len(solids) == 1), frame) for solid in solids]
 
-    def name(self, solid: SourceSolid, path: Path, is_alone: bool) -> str:
-        """Return a name for a solid that no other has: its own, and before it that of its file, if that has several."""
-        own = solid.name if solid.is_step and solid.name != f"{UNNAMED} 1" else path.stem
-        name = own if is_alone else f"{path.stem}/{solid.name}"
+    def left(self, read: _Read) -> str:
+        """Return the names of the solids of a file that nobody chose."""
+        return few((solid.name for solid in read.solids if id(solid) not in self.used), SHOWN)
+
+    def name(self, solid: SourceSolid, placed: PlacedFile, is_alone: bool) -> str:
+        """Return a name for a solid that no other has: its own, and before it that of its file, if several of that are
+        here.
+        """
+        stem = Path(placed.file).stem
+        has_name = placed.solid is not None or (solid.is_step and solid.name != f"{UNNAMED} 1")
+        name = (solid.name if has_name else stem) if is_alone else f"{stem}/{solid.name}"
         number = next(k for k in range(1, len(self.names) + 2) if _numbered(name, k) not in self.names)
         self.names.add(_numbered(name, number))
         return _numbered(name, number)
@@ -152,9 +195,11 @@ def _read(file: str, *, fillets: bool) -> _Read:
     check_name(file)
     path, notes = Path(file), list[str]()
     with _problems_of(file):
+        if path.suffix.lower() in MODELS:
+            raise refused(MODEL)
         if path.suffix.lower() not in SOLIDS:
             listed = ", ".join(SOLIDS)
-            raise refused(f"is none of the files that can be joined ({listed}); import it alone, and name bodies")
+            raise refused(f"is none of the files that can be joined ({listed}); convert it")
         note = read_solids_note(path, notes)
         solids = source_solids(path, notes, is_ours=bool(note), fillets=fillets)
         if note:

@@ -137,6 +137,15 @@ class ModelBodies:
             total += part.inertia_kg_m2 + part.mass_kg * (float(arm @ arm) * np.eye(3) - np.outer(arm, arm))
         return Inertial(mass, center, total)
 
+    def weight(self, body: int) -> Inertial | None:
+        """Return what MuJoCo says that a body weighs with all that hangs on it, in its frame; None: nothing."""
+        said, place = self._bodies[body]["subtree"], self.pose(body)
+        if self.inertial(self.below([body]), body) is None:
+            return None
+        turn = place.rotation
+        inertia = turn.T @ np.array(said["inertia"]) @ turn
+        return Inertial(said["mass"], place.inverse_transform(np.array(said["center"])), inertia)
+
     def _list(self, bodies: Iterable[int]) -> str:
         return few((self._names[number] for number in bodies), 12) or "none"
 

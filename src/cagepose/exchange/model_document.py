@@ -13,8 +13,10 @@ from cagepose.exchange.extra import mujoco
 from cagepose.exchange.model_bodies import WORLD_BODY, ModelBodies
 from cagepose.exchange.model_contacts import ModelContacts
 from cagepose.exchange.model_friction import scene_friction
+from cagepose.exchange.model_measures import mesh_triangles
 from cagepose.exchange.model_names import name_them
 from cagepose.exchange.model_overlaps import freed
+from cagepose.exchange.model_parts import ModelSource
 from cagepose.exchange.model_root import short_path
 from cagepose.exchange.model_shapes import LEFT_OUT, GeomShapes, reach_m
 from cagepose.exchange.model_text import ModelText, read_model_text
@@ -53,8 +55,16 @@ class Chosen(NamedTuple):
     qpos: str | None = None
 
 
-def model_document(source: str, chosen: Chosen) -> tuple[Data, list[str]]:
-    """Return the data of a scene of bodies, and what is not in it as in the model.
+class ModelData(NamedTuple):
+    """The data of a scene, what is not in it as in the model, in sentences, and what of the model is in it."""
+
+    document: Data
+    notes: list[str]
+    source: ModelSource
+
+
+def model_document(source: str, chosen: Chosen) -> ModelData:
+    """Return the data of a scene of bodies.
 
     Raises
     ------
@@ -75,7 +85,7 @@ def model_document(source: str, chosen: Chosen) -> tuple[Data, list[str]]:
         reader = _Reader(source, found, beside or {}, text, with_hulls=True)
         data = reader.document(chosen.object_name, chosen.cage_names)
         told.append(f"meshes are their hulls here: of the meshes themselves, one {problem}")
-    return data, told + reader.notes
+    return ModelData(data, told + reader.notes, reader.in_scene)
 
 
 def _beside(text: ModelText) -> str:
@@ -91,8 +101,10 @@ class _Reader:
         self.source, self.beside, self.text = source, beside, text
         self.notes = list[str]()
         self.problem: str | None = None  # why what `document` returned is no scene
+        self.in_scene: ModelSource  # what `document` took of the model
         self.bodies, self.contacts = ModelBodies(source, compiled), ModelContacts(compiled)
-        self.shapes = GeomShapes(self.notes, None if with_hulls else text.files)
+        meshes = {name: mesh_triangles(mesh) for name, mesh in compiled["meshes"].items()}
+        self.shapes = GeomShapes(self.notes, None if with_hulls else text.files, meshes)
         self.hulls: list[str] = compiled["hulls"]
         self.impossible: list[str] = compiled["inertia"]
 
@@ -108,6 +120,10 @@ class _Reader:
         parts, walls = (self.shapes.known(geoms, left_out) for geoms in (parts, walls))
         if not (parts and walls):
             self.refuse_nothing(of_object, of_cage, bool(left_out))
+        unknown = [geom["label"] for geom in (*parts, *walls) if geom["measures"] is None and geom["kind"] != "plane"]
+        if unknown:
+            self.notes.append(f"not compared with what they are here, as MuJoCo measures no volume: {few(unknown)}")
+        self.in_scene = ModelSource(bodies, held, parts, walls, self.shapes.meshes, self.shapes.off_m)
         found: Data = {"name": beside.get("name") or Path(self.source).stem, "units": {"length": "m"}}
         of_part = [shape for geom in parts for shape in self.shapes.shapes(geom, self.place(geom, held), parts)]
         reach = max(map(reach_m, of_part), default=0.0)

@@ -13,11 +13,11 @@ from cagepose.exchange.compile_model import FLAT
 from cagepose.exchange.ellipsoid import rounded_hull
 from cagepose.exchange.solids_document import METRES
 from cagepose.exchange.stl import MM_PER_M
-from cagepose.exchange.tolerances import SAME_AXES, VOLUME_NOT_CONVEX
+from cagepose.exchange.tolerances import ROUNDING_OF_MEASURES, SAME_AXES, VOLUME_NOT_CONVEX
 from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
-from cagepose.files.meshes.mesh_shapes import mesh_shapes
 from cagepose.files.meshes.pieces import MOST_CORNERS
+from cagepose.files.meshes.surface_distance import farthest_from
 from cagepose.files.triples import text_of, triples
 from cagepose.model.pose import Pose
 from cagepose.model.shape_moments import shape_moments
@@ -30,6 +30,8 @@ PLANE_OF_REACH = 20.0
 """Width of the box that stands for a plane, in distances of the object's farthest point: no plane of MuJoCo ends."""
 MOST_TRIANGLES = 20_000
 """Meshes of more stand for their hulls: what they are is not looked for."""
+HULL_SAMPLES = 500
+"""Points that are asked how far a hull is from its mesh: an arm has thirty, and more points take seconds each."""
 ROUND = ("sphere", "capsule", "cylinder", "ellipsoid")
 LEFT_OUT = "left out: "
 UNKNOWN = {
@@ -45,11 +47,17 @@ class GeomShapes:
     """Makes shapes, and notes what they are not.
 
     ``notes`` is added to. ``files`` are those of meshes that are what they are, by their names, as in URDF; None: they
-    stand for their hulls, as in MJCF.
+    stand for their hulls, as in MJCF. ``meshes`` are triangles by the names of meshes, in the frames of geoms.
+
+    Attributes
+    ----------
+    off_m
+        How far shapes are from their geom at most, by its label, metres; of those that are the geom nothing.
     """
 
-    def __init__(self, notes: list[str], files: Mapping[str, str] | None) -> None:
-        self.notes, self.files = notes, files
+    def __init__(self, notes: list[str], files: Mapping[str, str] | None, meshes: Mapping[str, Triangles]) -> None:
+        self.notes, self.files, self.meshes = notes, files, meshes
+        self.off_m = dict[str, float]()
 
     def known(self, geoms: Sequence[Data], left_out: list[str]) -> list[Data]:
         """Return the geoms that can be shapes; ``left_out`` gets the names of the others."""
@@ -93,6 +101,7 @@ class GeomShapes:
         if np.ptp(semi_axes) <= SAME_AXES * semi_axes.max():
             return {"sphere": {"radius": semi_axes[0]}}
         found = rounded_hull(semi_axes)
+        self.off_m[geom["label"]] = found.off_m
         self.notes.append(
             f"{geom['label']!r} is an ellipsoid; here, a hull of {len(found.core_m)} corners with round edges within"
             f" it, up to {1e3 * found.off_m:.2g} mm off, and nothing at the ends of its axes"
@@ -108,14 +117,19 @@ class GeomShapes:
         full_m3 = shape_moments(Convex(corners)).volume_m3 if whole is None else whole.volume()
         share = 1.0 - abs(geom["volume"]) / full_m3
         if not geom["is_closed"] or share > VOLUME_NOT_CONVEX:
-            what = f"not convex: here, its hull, {share:.1%} of which is too much"
-            if not geom["is_closed"]:
-                what = "open, or its sides are not all turned alike: here, its hull"
+            unusable = None
             if self.files is not None and (path := self.files.get(geom["file"] or "")):
                 try:
                     return self.own_shapes(geom, Path(path), place)
                 except SceneError as error:
-                    what = f"its hull here, as it {error.problems[0].message}"
+                    unusable = error.problems[0].message
+            off_m = self.off_hull(geom)
+            off = f", about {MM_PER_M * off_m:.2g} mm off at most" if off_m > 0.0 else ""
+            what = f"not convex: here, its hull, {share:.1%} of which is too much{off}"
+            if unusable is not None:
+                what = f"its hull here{off}, as it {unusable}"
+            elif not geom["is_closed"]:
+                what = f"open, or its sides are not all turned alike: here, its hull{off}"
             self.notes.append(f"the mesh {geom['label']!r} is {what}")
         numbers: Data = {"convex": {"vertices": geom["vertices"]}}
         if whole is not None:  # takes less time, but may touch nothing round of its own body
@@ -123,6 +137,14 @@ class GeomShapes:
             vertices, triangles = text_of(mesh.vertices.tolist()), text_of(mesh.faces.tolist())
             numbers = {"facets": {"vertices": vertices, "triangles": triangles}}
         return [{"name": geom["label"], **numbers, **METRES.pose(place, turn=False)}]
+
+    def off_hull(self, geom: Data) -> float:
+        """Return how far a mesh and its hull are apart, metres, as points of both say."""
+        mesh = self.meshes[geom["mesh"]]
+        hull = Triangles.of(manifold3d().Manifold.hull_points(mesh.vertices))
+        off_m = max(farthest_from(one, other, HULL_SAMPLES) for one, other in ((hull, mesh), (mesh, hull)))
+        self.off_m[geom["label"]] = off_m if off_m > ROUNDING_OF_MEASURES * mesh.size else 0.0
+        return self.off_m[geom["label"]]
 
     def own_shapes(self, geom: Data, path: Path, place: Pose) -> list[Data]:
         """Return the shapes of a mesh that is at a place, as those of solids are found.
@@ -138,9 +160,9 @@ class GeomShapes:
         if scale.prod() <= 0.0:
             raise mesh_file.refused("is mirrored by its scale; mirror it in its file")
         given = Triangles(MM_PER_M * scale * surface.vertices, surface.faces)
-        mesh, said = mesh_file.sound(given, geom["label"], "mm")
-        found = mesh_shapes(mesh, geom["label"], "mm")
-        self.notes += [*said, *found.notes]
+        found = mesh_file.sound_shapes(given, geom["label"], "mm")
+        self.notes += found.notes
+        self.off_m[geom["label"]] = found.error / MM_PER_M
         of_file = place @ Pose(geom["mesh_position"], geom["mesh_quaternion"]).inverse()
         metres = [mesh_file.scaled(shape, 1.0 / MM_PER_M) for shape in found.shapes]
         return [METRES.shape(shape.moved(of_file @ shape.pose_body_shape)) for shape in metres]

@@ -17,6 +17,7 @@ from cagepose.exchange.tolerances import SAME_END
 from cagepose.files.meshes.mesh_file import refused
 from cagepose.files.progress import tell
 from cagepose.files.scene_document import SceneWriter
+from cagepose.files.solid_names import is_of, solids_named
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Shape
@@ -110,22 +111,15 @@ def kept_friction(note: Data, names: Sequence[str]) -> Data:
     return {"friction": {**coefficient, "of": of}} if of or coefficient else {}
 
 
-def is_of(name: str, element: str) -> bool:
-    return name == element or name.startswith(f"{element}/")
-
-
 def _chosen(
     source: str, names: list[str], object_name: str | None, cage_names: Sequence[str]
 ) -> tuple[list[str], list[str]]:
     """Return the names of the solids of the object and of the cage."""
 
     def of(wanted: str) -> list[str]:
-        found = [name for name in names if is_of(name, wanted)]
-        if not found and Path(wanted).suffix.lower() in SOLIDS:
+        if Path(wanted).suffix.lower() in SOLIDS and not any(is_of(name, wanted) for name in names):
             raise refused(f"has no solid {wanted!r}; if that is a file, join both: {JOIN}")
-        if not found:
-            raise refused(f"has no solid {wanted!r}; its solids: {few(names, 12) or 'none'}")
-        return found
+        return solids_named(wanted, names)
 
     if len(names) == 1 and object_name is None:
         raise refused(ALONE.format(quote(source)))

@@ -11,7 +11,6 @@ from cagepose.exchange.imported_part import ImportedPart, Measures, measures_of_
 from cagepose.exchange.stl import MM_PER_M
 from cagepose.files.meshes import mesh_file
 from cagepose.files.meshes.manifolds import Triangles
-from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes
 from cagepose.files.step import step_file
 from cagepose.files.step.solid_shapes import rounded, solid_shapes
 from cagepose.files.step.triangles import CHORDS_OF_CIRCLE
@@ -74,7 +73,10 @@ class SourceSolid(NamedTuple):
         SceneError
             Its surface is no closed one.
         """
-        found = solid_shapes(name, self.data) if self.is_step else self._mesh_shapes(name)
+        if self.is_step:
+            found = solid_shapes(name, self.data)
+        else:
+            found = mesh_file.sound_shapes(self.surface(), name, "mm", f"{name!r} ")
         metres = [mesh_file.scaled(shape, 1.0 / MM_PER_M) for shape in found.shapes]
         shapes = tuple(shape.moved(frame @ shape.pose_body_shape) for shape in metres)
         own = self.surface()
@@ -83,11 +85,6 @@ class SourceSolid(NamedTuple):
         return ImportedPart(
             body, name, shapes, surface, source, measures_of_shapes(shapes), found.error / MM_PER_M, found.notes
         )
-
-    def _mesh_shapes(self, name: str) -> MeshShapes:
-        mesh, said = mesh_file.sound(self.surface(), name, "mm", f"{name!r} ")
-        found = mesh_shapes(mesh, name, "mm")
-        return found._replace(notes=(*said, *found.notes))
 
 
 def source_solids(path: Path, notes: list[str], *, is_ours: bool = False, fillets: bool = True) -> list[SourceSolid]:
@@ -122,6 +119,6 @@ def _measures_of_step(solid: Data, frame: Pose) -> Measures:
     return Measures(
         solid["volume"] / MM_PER_M**3,
         frame.transform(np.array(solid["center"]) / MM_PER_M),
-        np.ptp(frame.transform(corners / MM_PER_M), axis=0),
+        np.array([ends(frame.transform(corners / MM_PER_M), axis=0) for ends in (np.min, np.max)]),
         turn @ (np.array(solid["gyration"]) / MM_PER_M**2) @ turn.T,
     )

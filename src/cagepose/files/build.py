@@ -5,22 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from cagepose.errors import Key, Problem, SceneError, key_path
 from cagepose.files.build_loads import load_of
-from cagepose.files.meshes.mesh_file import read_mesh
-from cagepose.files.meshes.mesh_shapes import MeshShapes
 from cagepose.files.points_file import PointsTable
 from cagepose.files.schema import BoxModel, SceneModel
 from cagepose.files.schema_base import PoseModel
 from cagepose.files.schema_cage import CageBodyModel
 from cagepose.files.schema_shapes import CoefficientModel, MeshModel, ShapeModel
 from cagepose.files.schema_surfaces import SurfaceModel
-from cagepose.files.step import step_file
 from cagepose.files.triples import triples, whole_numbers, whole_triples
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.box import Box
@@ -34,8 +30,11 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Adjustable, Scene
 from cagepose.model.scope import unknown_shapes
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Shape, Sphere
-from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, Surface
+from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, Surface, three
 from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT, Tolerances
+
+if TYPE_CHECKING:
+    from cagepose.files.meshes.mesh_shapes import MeshShapes
 
 Noun = TypeVar("Noun")
 Given = ParamSpec("Given")
@@ -192,15 +191,15 @@ class _Builder:
 
     def surface(self, model: SurfaceModel) -> Surface:
         if model.plane is not None:
-            return Surface(PLANE, _three(to_metres(model.plane.point, self.unit)), _three(model.plane.normal))
+            return Surface(PLANE, three(to_metres(model.plane.point, self.unit)), three(model.plane.normal))
         if model.sphere is not None:
             radius_m = (-1.0 if model.sphere.hollow else 1.0) * self.length(model.sphere.radius)
-            return Surface(SPHERE, _three(to_metres(model.sphere.center, self.unit)), (0.0, 0.0, 0.0), radius_m)
+            return Surface(SPHERE, three(to_metres(model.sphere.center, self.unit)), (0.0, 0.0, 0.0), radius_m)
         side = model.cone or model.cylinder
         assert side is not None, "the schema lets no surface pass that has no kind"
         radius_m = (-1.0 if side.hollow else 1.0) * self.length(side.radius)
         kind, slope = (CYLINDER, 0.0) if model.cone is None else (CONE, model.cone.slope)
-        return Surface(kind, _three(to_metres(side.point, self.unit)), _three(side.axis), radius_m, slope)
+        return Surface(kind, three(to_metres(side.point, self.unit)), three(side.axis), radius_m, slope)
 
     def mesh(self, model: ShapeModel, name: str) -> list[Shape]:
         """Return what a mesh is, in its body's frame."""
@@ -215,6 +214,9 @@ class _Builder:
         return [shape.moved(pose @ shape.pose_body_shape) for shape in found.shapes]
 
     def body_in_file(self, path: Path, model: MeshModel, name: str) -> MeshShapes:
+        from cagepose.files.meshes.mesh_file import read_mesh  # 50 modules, which most scenes do not need
+        from cagepose.files.step import step_file
+
         if path.suffix.lower() not in step_file.SUFFIXES:
             if model.solid is not None:
                 raise SceneError(
@@ -340,8 +342,3 @@ def _coefficient(friction: CoefficientModel | float | None) -> float | None:
     if friction.angle_deg is not None:
         return math.tan(math.radians(friction.angle_deg))
     return friction.coefficient
-
-
-def _three(values: ArrayLike) -> tuple[float, float, float]:
-    x, y, z = np.asarray(values, dtype=np.float64).tolist()
-    return x, y, z

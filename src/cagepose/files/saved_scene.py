@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 from typing import Any
 
 from ruamel.yaml import YAML
@@ -18,6 +19,10 @@ from cagepose.model.scene import Scene
 
 LINE_WIDTH = 110
 """Characters; a mapping that is shorter stands in one line."""
+LONG_NUMBERS = re.compile(r"[-+.eE\d, ]{1000,}")
+"""Texts that ruamel.yaml does not get to see, as it looks at each character several times."""
+STANDS_FOR = re.compile("\ue000(\\d+)\ue000")
+"""What stands for such a text: its number between characters that nobody uses."""
 
 
 def save_scene(scene: Scene, path: str | os.PathLike[str], length_unit: LengthUnit = "mm") -> None:
@@ -43,8 +48,10 @@ def save_scene(scene: Scene, path: str | os.PathLike[str], length_unit: LengthUn
     yaml.indent(mapping=2, sequence=4, offset=2)
     stream = io.StringIO(f"# A scene, {MADE_BY}.\n")
     stream.seek(0, io.SEEK_END)
-    yaml.dump(_styled(_readable(scene_document(scene, length_unit))), stream)
-    write_whole(path, stream.getvalue().encode())
+    long = list[str]()
+    yaml.dump(_styled(_readable(scene_document(scene, length_unit)), long), stream)
+    content = STANDS_FOR.sub(lambda found: long[int(found[1])], stream.getvalue())
+    write_whole(path, content.encode())
 
 
 def check_can_save_scene(path: str | os.PathLike[str]) -> None:
@@ -73,19 +80,24 @@ def _has_number(data: dict[str, Any], key: str) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _styled(value: object) -> object:
-    """Return data in the form that people write: numbers in brackets, short mappings in one line."""
+def _styled(value: object, long: list[str]) -> object:
+    """Return data in the form that people write: numbers in brackets, short mappings in one line. Long texts of numbers
+    are added to ``long``, and what stands for them is returned.
+    """
     if isinstance(value, dict):
-        found = CommentedMap((key, _styled(item)) for key, item in value.items())
+        found = CommentedMap((key, _styled(item, long)) for key, item in value.items())
         is_flat = not any(isinstance(item, dict) for item in value.values()) and _is_short(value)
         if is_flat or (len(value) > 1 and _is_short(value)):
             found.fa.set_flow_style()
         return found
     if isinstance(value, list):
-        rows = CommentedSeq(_styled(item) for item in value)
+        rows = CommentedSeq(_styled(item, long) for item in value)
         if not any(isinstance(item, dict | list) for item in value):
             rows.fa.set_flow_style()
         return rows
+    if isinstance(value, str) and LONG_NUMBERS.fullmatch(value):
+        long.append(value)
+        return f"\ue000{len(long) - 1}\ue000"
     return value
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cagepose.files.triples import text_of
-from cagepose.files.units import LengthUnit, from_metres, to_metres
+from cagepose.files.units import METRES_OF, LengthUnit, to_metres
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.cage_elements import Elements
@@ -80,6 +80,7 @@ class SceneWriter:
 
     def __init__(self, unit: LengthUnit, friction_of: Mapping[str, float] | None = None) -> None:
         self.unit: LengthUnit = unit
+        self.ratio = METRES_OF[unit]  # by which lengths of a scene are divided one by one, without NumPy
         self.metres = float(to_metres(1.0, unit))
         self.friction_of = dict(friction_of or {})
 
@@ -275,8 +276,10 @@ class SceneWriter:
         return {"moment": self.length(load.stop_at)} if load.stops_at_moment else {"force": _plain(load.stop_at)}
 
     def length(self, length_m: float) -> float:
-        unit = self.unit
-        return _shortest(float(from_metres(length_m, unit)), length_m, lambda shown: float(to_metres(shown, unit)))
+        numerator, denominator = self.ratio
+        if numerator == denominator:
+            return _plain(float(length_m))
+        return _shortest(length_m * denominator / numerator, length_m, lambda shown: shown * numerator / denominator)
 
     def lengths(self, lengths_m: ArrayLike) -> list[float]:
         return [self.length(length_m) for length_m in np.asarray(lengths_m, dtype=np.float64).tolist()]

@@ -16,7 +16,7 @@ LENGTH_UNITS: tuple[LengthUnit, ...] = get_args(LengthUnit)
 
 # Each unit as a ratio of whole numbers: 29.52 mm becomes 29.52 / 1000, the double nearest to 0.02952 (29.52 * 0.001 may
 # miss it).
-_METRES: dict[LengthUnit, tuple[float, float]] = {"mm": (1.0, 1000.0), "m": (1.0, 1.0), "in": (127.0, 5000.0)}
+METRES_OF: dict[LengthUnit, tuple[float, float]] = {"mm": (1.0, 1000.0), "m": (1.0, 1.0), "in": (127.0, 5000.0)}
 
 _LENGTHS = {
     *("size", "position", "radius", "radius_bottom", "radius_top", "length", "depth", "width", "vertices"),
@@ -32,7 +32,7 @@ def to_metres(lengths: ArrayLike, unit: LengthUnit) -> FloatArray:
     >>> to_metres([29.52, 4.0], "mm").tolist()
     [0.02952, 0.004]
     """
-    numerator, denominator = _METRES[unit]
+    numerator, denominator = METRES_OF[unit]
     array: FloatArray = np.asarray(lengths, dtype=np.float64) * numerator / denominator
     return array
 
@@ -43,7 +43,7 @@ def from_metres(lengths_m: ArrayLike, unit: LengthUnit) -> FloatArray:
     >>> float(from_metres(0.0254, "in"))
     1.0
     """
-    numerator, denominator = _METRES[unit]
+    numerator, denominator = METRES_OF[unit]
     array: FloatArray = np.asarray(lengths_m, dtype=np.float64) * denominator / numerator
     return array
 

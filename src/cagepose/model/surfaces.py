@@ -83,11 +83,12 @@ class Surface:
         """Return it with lengths times a factor, and then moved."""
         point = pose.transform(factor * np.array(self.point_m))
         axis = pose.rotation @ np.array(self.axis)
-        return replace(self, point_m=_three(point), axis=_three(axis), radius_m=factor * self.radius_m)
+        return replace(self, point_m=three(point), axis=three(axis), radius_m=factor * self.radius_m)
 
 
-def _three(values: FloatArray) -> tuple[float, float, float]:
-    x, y, z = values.tolist()
+def three(values: ArrayLike) -> tuple[float, float, float]:
+    """Return three numbers as a surface has them."""
+    x, y, z = np.asarray(values, dtype=np.float64).tolist()
     return x, y, z
 
 

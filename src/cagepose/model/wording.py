@@ -68,7 +68,7 @@ def counted(*numbers: tuple[int, str, str]) -> str:
     >>> counted((1, "box", "boxes"), (0, "shape", "shapes"), (2, "hole", "holes"))
     '1 box, 2 holes'
     """
-    return ", ".join(f"{number} {one if number == 1 else many}" for number, one, many in numbers if number)
+    return ", ".join(f"{number:,} {one if number == 1 else many}" for number, one, many in numbers if number)
 
 
 def few(names: Iterable[str], most: int = 4) -> str:

@@ -1,4 +1,4 @@
-"""A page about an import: what became of each solid, and pictures of both: `write_import_page`."""
+"""A page about an import: what became of each solid or body, and pictures of both: `write_import_page`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 from base64 import b64encode
 from collections.abc import Sequence
 
-from cagepose.exchange.import_summary import HEADINGS, summary_rows
+from cagepose.exchange.import_summary import HEADINGS, summary_rows, weight_words
 from cagepose.exchange.imported import Import
 from cagepose.exchange.tolerances import ROUNDING_OF_MEASURES
 from cagepose.files.write import MADE_BY, check_can_write, is_made_by_us, write_whole
@@ -34,6 +34,7 @@ def write_import_page(found: Import, path: str | os.PathLike[str]) -> None:
             headings=HEADINGS,
             rows=summary_rows(found.parts),
             rounding=f"{ROUNDING_OF_MEASURES:g}",
+            weight=weight_words(found.weight) if found.weight else "",
             notes=found.notes,
             pictures=[(body, *_embedded(pictures_of(parts))) for body, parts in bodies if parts],
         )

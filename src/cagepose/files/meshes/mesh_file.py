@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -59,12 +61,25 @@ def read_mesh(path: Path, given: LengthUnit | None, of_scene: LengthUnit, name: 
     MissingExtraError
         trimesh is not installed.
     """
+    unit = given or (UNIT_OF_GLB if path.suffix.lower() == ".glb" else of_scene)
+    with stamped(path) as stamp:
+        return _shapes(*stamp, unit, name)
+
+
+@contextmanager
+def stamped(path: Path) -> Iterator[tuple[str, int, int]]:
+    """Yield the name of a file, when it was changed and how many bytes it has, by which shapes of it are remembered.
+
+    Raises
+    ------
+    SceneError
+        It is no file, or, as it is read within, cannot be read.
+    """
     if "\0" in os.fspath(path):
         raise refused("is not a file name; remove the unprintable character")
-    unit = given or (UNIT_OF_GLB if path.suffix.lower() == ".glb" else of_scene)
     try:
         found = path.stat()
-        return _shapes(os.fspath(path), found.st_mtime_ns, found.st_size, unit, name)
+        yield os.fspath(path), found.st_mtime_ns, found.st_size
     except FileNotFoundError:
         raise refused("is no file; check the name and the folder") from None
     except OSError as error:
@@ -78,9 +93,7 @@ def _shapes(file: str, _changed: int, _n_bytes: int, unit: LengthUnit, name: str
     path = Path(file)
     found = kept(path, name, unit)
     if found is None:
-        mesh, notes = sound(read_solids(path, split=False)[""], name, unit)
-        found = mesh_shapes(mesh, name, unit)
-        found = found._replace(notes=(*notes, *found.notes))
+        found = sound_shapes(read_solids(path, split=False)[""], name, unit)
         keep(path, found, unit)
     metres = float(to_metres(1.0, unit))
     return MeshShapes(tuple(scaled(shape, metres) for shape in found.shapes), metres * found.error, found.notes)
@@ -187,6 +200,13 @@ def sound(mesh: Triangles, name: str, unit: str, which: str = "") -> Sound:
     if found.moved > ROUNDING_OF_MESH * mesh.size:
         notes.insert(0, f"{name!r} has cracks of up to {found.moved:.2g} {unit}, which are closed here")
     return Sound(bodies.mesh, tuple(notes))
+
+
+def sound_shapes(mesh: Triangles, name: str, unit: str, which: str = "") -> MeshShapes:
+    """Return the shapes of a body, see `mesh_shapes`, whose surface is mended first, see `sound`."""
+    closed, said = sound(mesh, name, unit, which)
+    found = mesh_shapes(closed, name, unit)
+    return found._replace(notes=(*said, *found.notes))
 
 
 def checked(mesh: Triangles, which: str) -> Triangles:

@@ -11,8 +11,8 @@ N_SAMPLES = 4000
 """Points of each surface that are asked how far they are from the other."""
 
 
-def farthest_from(one: Triangles, other: Triangles, *, outside: bool = False) -> float:
-    """Return how far points of one surface, spread evenly and at its corners, are from another at most.
+def farthest_from(one: Triangles, other: Triangles, n_samples: int = N_SAMPLES, *, outside: bool = False) -> float:
+    """Return how far points of one surface, so many spread evenly and as many at its corners, are from another at most.
 
     ``outside``: of those alone that are outside of it, as between the parts of a body there may be gaps within it.
     """
@@ -20,9 +20,9 @@ def farthest_from(one: Triangles, other: Triangles, *, outside: bool = False) ->
     files_library("rtree", "a mesh that is not convex needs rtree")
     random = np.random.default_rng(0)
     doubled = np.linalg.norm(one.areas, axis=1)
-    chosen = one.vertices[one.faces[random.choice(len(one.faces), N_SAMPLES, p=doubled / doubled.sum())]]
-    inside = np.einsum("ij,ijk->ik", random.dirichlet(np.ones(3), N_SAMPLES), chosen)
-    corners = one.vertices[:: max(1, len(one.vertices) // N_SAMPLES)]
+    chosen = one.vertices[one.faces[random.choice(len(one.faces), n_samples, p=doubled / doubled.sum())]]
+    inside = np.einsum("ij,ijk->ik", random.dirichlet(np.ones(3), n_samples), chosen)
+    corners = one.vertices[:: max(1, len(one.vertices) // n_samples)]
     surface = trimesh.Trimesh(other.vertices, other.faces, process=False)
     points = np.concatenate([inside, corners])
     nearest, distances, faces = trimesh.proximity.closest_point(surface, points)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from cagepose.files.step.open_cascade import each, moments_of, xyz
 from cagepose.files.step.tolerances import LEAST_TAKEN, TANGENT_RAD
 
 WIDEST = 0.97 * np.pi
@@ -66,22 +66,21 @@ def _hollow_radius(face: Any) -> float:
     kind = surface.GetType()
     point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
     surface.D1(u + wide / 2.0, v + high / 2.0, point, along_u, along_v)
-    place, out = _xyz(point), np.cross(_xyz(along_u), _xyz(along_v))
+    place, out = np.array(xyz(point)), np.cross(xyz(along_u), xyz(along_v))
     out = -out if face.Orientation() == TopAbs_REVERSED else out
     if kind == GeomAbs_Cylinder:
         ball, angle = surface.Cylinder(), wide
-        axis = _xyz(ball.Axis().Direction())
-        middle = _xyz(ball.Location())
-        middle, radius = middle + ((place - middle) @ axis) * axis, ball.Radius()
+        axis, middle, radius = np.array(xyz(ball.Axis().Direction())), np.array(xyz(ball.Location())), ball.Radius()
+        middle += ((place - middle) @ axis) * axis
     elif kind == GeomAbs_Sphere:
         ball, angle = surface.Sphere(), min(wide, high)
-        middle, radius = _xyz(ball.Location()), ball.Radius()
+        middle, radius = np.array(xyz(ball.Location())), ball.Radius()
     elif kind == GeomAbs_Torus:
         ball, angle = surface.Torus(), high
-        axis, middle, radius = _xyz(ball.Axis().Direction()), _xyz(ball.Location()), ball.MinorRadius()
-        arm = place - middle
+        axis, middle = np.array(xyz(ball.Axis().Direction())), np.array(xyz(ball.Location()))
+        arm, radius = place - middle, ball.MinorRadius()
         arm -= (arm @ axis) * axis
-        middle = middle + ball.MajorRadius() * arm / np.linalg.norm(arm)
+        middle += ball.MajorRadius() * arm / np.linalg.norm(arm)
     else:
         return 0.0
     return float(radius) if angle < WIDEST and out @ (place - middle) < 0.0 else 0.0
@@ -100,29 +99,3 @@ def _joins_smoothly(face: Any) -> bool:
         and BRep_Tool.MaxContinuity_s(edge) != GeomAbs_C0
     ]
     return len(smooth) >= 2
-
-
-def moments_of(shape: Any, *, of_surface: bool = False) -> Any:
-    """Return what Open CASCADE says of a solid's volume, or of a surface's area, and of its middle and inertia."""
-    from OCP.BRepGProp import BRepGProp
-    from OCP.GProp import GProp_GProps
-
-    found = GProp_GProps()
-    (BRepGProp.SurfaceProperties_s if of_surface else BRepGProp.VolumeProperties_s)(shape, found)
-    return found
-
-
-def each(kind: str, shape: Any) -> Iterator[Any]:
-    """Yield the parts of a shape that are of a kind: "Solid", "Face" or "Edge"."""
-    from OCP import TopAbs
-    from OCP.TopExp import TopExp_Explorer
-    from OCP.TopoDS import TopoDS
-
-    explorer = TopExp_Explorer(shape, getattr(TopAbs, f"TopAbs_{kind.upper()}"))
-    while explorer.More():
-        yield getattr(TopoDS, kind)(explorer.Current())
-        explorer.Next()
-
-
-def _xyz(point: Any) -> Any:
-    return np.array([point.X(), point.Y(), point.Z()])

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.files.step.fillets import each, moments_of, without_fillets
+from cagepose.files.step.fillets import without_fillets
+from cagepose.files.step.open_cascade import each, moments_of, xyz
 from cagepose.files.step.tolerances import SAME_OF_SIZE
 from cagepose.files.step.triangles import off_volume, triangles_of
 from cagepose.model.shape_moments import shape_moments
@@ -106,8 +107,11 @@ def _solid(solid: Any, most_fillets: int) -> Data:
     if core is not None:
         return {**measures, **core}  # to make triangles of a ball takes 0.3 s
     found = {**measures, **triangles_of(solid)}
-    if off_volume(found) > 0.0 or found["off_middles"] > ACROSS * found["off"]:  # so holes across round walls at times
+    found["off_volume"] = off_volume(found)
+    leads_across = found["off_middles"] > ACROSS * found["off"]  # as where holes cross round walls at times
+    if found["off_volume"] > 0.0 or leads_across:
         found |= triangles_of(solid, within=True)
+        found["off_volume"] = off_volume(found)
     sharp = without_fillets(solid, faces, most_fillets) if most_fillets > 0 else None
     if sharp is not None:
         try:
@@ -129,10 +133,10 @@ def _measures(solid: Any, mass: Any) -> Data:
     box = Bnd_Box()
     BRepBndLib.AddOptimal_s(solid, box, False, False)
     return {
-        "center": _xyz(mass.CentreOfMass()),
+        "center": xyz(mass.CentreOfMass()),
         "gyration": (_inertia(mass) / mass.Mass()).tolist(),
-        "low": _xyz(box.CornerMin()),
-        "high": _xyz(box.CornerMax()),
+        "low": xyz(box.CornerMin()),
+        "high": xyz(box.CornerMax()),
     }
 
 
@@ -157,7 +161,7 @@ def _rounded(faces: list[Any], mass: Any) -> Data | None:
         if surface.GetType() == GeomAbs_Sphere:
             ball = surface.Sphere()
             radii.append(ball.Radius())
-            centers.append(_xyz(ball.Location()))
+            centers.append(xyz(ball.Location()))
         elif surface.GetType() == GeomAbs_Cylinder:
             radii.append(surface.Cylinder().Radius())
         elif surface.GetType() != GeomAbs_Plane:
@@ -174,11 +178,7 @@ def _rounded(faces: list[Any], mass: Any) -> Data | None:
     of_core = np.trace(found.second_moment_m2) * np.eye(3) - found.second_moment_m2
     is_it = (
         abs(found.volume_m3 - mass.Mass()) <= SAME_OF_SIZE * found.volume_m3
-        and np.abs(found.centroid_m - _xyz(mass.CentreOfMass())).max() <= SAME_OF_SIZE * size
+        and np.abs(found.centroid_m - xyz(mass.CentreOfMass())).max() <= SAME_OF_SIZE * size
         and np.abs(of_core - inertia).max() <= SAME_OF_SIZE * size**2
     )
     return {"core": core.tolist(), "radius": radii[0]} if is_it else None
-
-
-def _xyz(point: Any) -> list[float]:
-    return [point.X(), point.Y(), point.Z()]

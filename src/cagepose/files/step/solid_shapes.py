@@ -13,12 +13,10 @@ from cagepose.files.meshes.mesh_shapes import MeshShapes, known_shapes, mesh_sha
 from cagepose.files.meshes.surface_distance import farthest_from
 from cagepose.files.step.exact_facets import facets_on_surfaces
 from cagepose.files.step.tolerances import SAME_VOLUME
-from cagepose.files.step.triangles import off_volume
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.shape_moments import shape_moments
 from cagepose.model.shapes import Capsule, Convex, Shape, Sphere
-from cagepose.model.sides import open_sides
 from cagepose.model.wording import counted
 
 Data = dict[str, Any]
@@ -51,8 +49,8 @@ def solid_shapes(name: str, solid: Data) -> MeshShapes:
     """
     if "core" in solid:
         return MeshShapes((rounded(solid, name),), 0.0, ())
-    if (off := off_volume(solid)) > 0.0:
-        found_off = f"{name!r} is {off:.1%} of its volume off as Open CASCADE makes triangles of it"
+    if solid["off_volume"] > 0.0:
+        found_off = f"{name!r} is {solid['off_volume']:.1%} of its volume off as Open CASCADE makes triangles of it"
         raise mesh_file.refused(f"{found_off}; repair it, or export it as STL")
     given = Triangles(np.array(solid["vertices"]), np.array(solid["faces"]))
     mesh, said = mesh_file.sound(given, name, "mm", f"{name!r} ")
@@ -63,7 +61,7 @@ def solid_shapes(name: str, solid: Data) -> MeshShapes:
     known = known_shapes(mesh, name, "mm") if len(mesh.faces) <= MOST_RECOGNISED else None
     if known is not None and _is_exact(known, solid):
         return MeshShapes(known.shapes, lost, tuple(notes))
-    if len(open_sides(np.array(solid["faces"]))) == 0:
+    if solid["is_closed"]:
         exact = facets_on_surfaces(solid, name)
         return MeshShapes((exact.shape,), max(lost, exact.error), (*notes, *exact.notes))
     found = known or mesh_shapes(mesh, name, "mm")

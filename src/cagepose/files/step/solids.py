@@ -23,6 +23,7 @@ def read_step(path: Path, *, fillets: bool = True) -> Data:
 
     Triangles stand for surfaces: these are ``known``, and each triangle is ``on`` one, -1: on another that is none of
     `cagepose.model.surfaces`. Corners are ``off_surfaces``, and triangles on others ``off_others``, by so much at most.
+    Whether no side is open is ``is_closed``, and ``off_volume`` as `cagepose.files.step.triangles.off_volume`.
 
     Parameters
     ----------

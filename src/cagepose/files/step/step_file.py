@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, cast
 
-from cagepose.files.meshes.mesh_file import refused, scaled
+from cagepose.files.meshes.mesh_file import refused, scaled, stamped
 from cagepose.files.meshes.mesh_shapes import MeshShapes
 from cagepose.files.progress import tell
+from cagepose.files.solid_names import solids_named
 from cagepose.files.step.kept_shapes import KeptShape, KeptShapes, keep, kept
 from cagepose.files.step.solid_shapes import solid_shapes
 from cagepose.files.step.solids import read_step
@@ -46,17 +46,8 @@ def read_step_shapes(path: Path, solid: str | None, name: str, *, fillets: bool 
     MissingExtraError
         What reads it is not installed.
     """
-    if "\0" in os.fspath(path):
-        raise refused("is not a file name; remove the unprintable character")
-    try:
-        found = path.stat()
-        return _shapes(os.fspath(path), found.st_mtime_ns, found.st_size, solid, name, fillets)
-    except FileNotFoundError:
-        raise refused("is no file; check the name and the folder") from None
-    except OSError as error:
-        raise refused(f"cannot be read ({error.strerror or error}); check its permissions") from None
-    finally:
-        tell("")
+    with stamped(path) as stamp:
+        return _shapes(*stamp, solid, name, fillets)
 
 
 @lru_cache(maxsize=64)
@@ -76,14 +67,11 @@ def _solids(file: str, _changed: int, _n_bytes: int, fillets: bool) -> Data:
 
 
 def _of_solids(read: Data, wanted: str | None, name: str) -> KeptShapes:
-    solids = {
-        own: solid
-        for own, solid in named_solids(read).items()
-        if wanted is None or own == wanted or own.startswith(f"{wanted}/")
-    }
+    solids = named_solids(read)
     if not solids:
-        listed = few(list(named_solids(read)), 12)
-        raise refused(f"has no solid {wanted!r}; its solids: {listed}" if listed else "has no solid; export it as one")
+        raise refused("has no solid; export it as one")
+    if wanted is not None:
+        solids = {own: solids[own] for own in solids_named(wanted, solids)}
     notes = [f"left out: {few(read['out'], 12)}"] if read["out"] else []
     alone = len(solids) == 1
     made = [solid_shapes(name if alone else f"{name}/{own}", solid) for own, solid in solids.items()]

@@ -7,9 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from cagepose.files.step.open_cascade import xyz
 from cagepose.files.step.tolerances import SAME_OF_SIZE
 from cagepose.model.checks import FloatArray
 from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, Surface
+
+ASLANT = 0.9
+"""Cosine between axes that are asked no further whether they are one: to cross them takes ten times as long."""
 
 
 def surface_of_face(face: Any, corners: FloatArray) -> Surface | None:
@@ -23,15 +27,15 @@ def surface_of_face(face: Any, corners: FloatArray) -> Surface | None:
     kind = adaptor.GetType()
     if kind == GeomAbs_Plane:
         plane = adaptor.Plane()
-        found = Surface(PLANE, _xyz(plane.Location()), _xyz(plane.Axis().Direction()))
+        found = Surface(PLANE, xyz(plane.Location()), xyz(plane.Axis().Direction()))
     elif kind == GeomAbs_Cylinder:
         cylinder = adaptor.Cylinder()
-        found = Surface(CYLINDER, _xyz(cylinder.Location()), _xyz(cylinder.Axis().Direction()), cylinder.Radius())
+        found = Surface(CYLINDER, xyz(cylinder.Location()), xyz(cylinder.Axis().Direction()), cylinder.Radius())
     elif kind == GeomAbs_Cone:
         found = _cone(adaptor.Cone(), corners)
     elif kind == GeomAbs_Sphere:
         ball = adaptor.Sphere()
-        found = Surface(SPHERE, _xyz(ball.Location()), (0.0, 0.0, 0.0), ball.Radius())
+        found = Surface(SPHERE, xyz(ball.Location()), (0.0, 0.0, 0.0), ball.Radius())
     else:
         return None
     return _facing_out(found, corners)
@@ -39,7 +43,7 @@ def surface_of_face(face: Any, corners: FloatArray) -> Surface | None:
 
 def _cone(cone: Any, corners: FloatArray) -> Surface:
     """Return a cone with its point where its triangles are widest."""
-    place, axis = _xyz(cone.Location()), _xyz(cone.Axis().Direction())
+    place, axis = xyz(cone.Location()), xyz(cone.Axis().Direction())
     heights = (corners.reshape(-1, 3) - np.array(place)) @ np.array(axis)
     slope = float(np.tan(cone.SemiAngle()))
     radii = cone.RefRadius() + slope * heights
@@ -86,7 +90,7 @@ def _are_one(one: Surface, other: Surface, size: float) -> bool:
     axis, along = np.array(one.axis), float(np.dot(one.axis, other.axis))
     if one.kind == SPHERE:
         return float(np.linalg.norm(between)) <= slack and abs(one.radius_m - other.radius_m) <= slack
-    if float(np.linalg.norm(np.cross(one.axis, other.axis))) > SAME_OF_SIZE:
+    if abs(along) < ASLANT or float(np.linalg.norm(np.cross(one.axis, other.axis))) > SAME_OF_SIZE:
         return False
     if one.kind == PLANE:
         return along > 0.0 and abs(float(between @ axis)) <= slack
@@ -101,7 +105,3 @@ def farthest_off(surfaces: list[Surface], on: FloatArray, places: FloatArray) ->
     """Return how far places of triangles, (n, 3) or (n, 3, 3), are from the surface that each is on, at most."""
     off = [np.abs(surface.heights(places[on == k])).max(initial=0.0) for k, surface in enumerate(surfaces)]
     return float(max(off, default=0.0))
-
-
-def _xyz(point: Any) -> tuple[float, float, float]:
-    return point.X(), point.Y(), point.Z()

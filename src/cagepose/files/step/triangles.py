@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.files.step.fillets import each, moments_of
+from cagepose.files.step.open_cascade import each, moments_of
 from cagepose.files.step.surfaces import farthest_off, one_of_each, surface_of_face
 from cagepose.files.step.tolerances import SAME_OF_SIZE, SAME_PLACE
 from cagepose.model.checks import FloatArray
+from cagepose.model.sides import open_sides
 from cagepose.model.surfaces import Surface
 
 Data = dict[str, Any]
@@ -66,15 +67,16 @@ def triangles_of(solid: Any, *, within: bool = False) -> Data:
     joined = number.ravel()[np.concatenate(triangles)]
     distinct = (joined != np.roll(joined, 1, axis=1)).all(axis=1)
     known, which = one_of_each(surfaces, size)
-    on, vertices = np.repeat(which, [len(one) for one in triangles])[distinct], places[kept]
+    on, vertices, corners = np.repeat(which, [len(one) for one in triangles])[distinct], places[kept], joined[distinct]
     return {
         "vertices": vertices.tolist(),
-        "faces": joined[distinct].tolist(),
+        "faces": corners.tolist(),
+        "is_closed": len(open_sides(corners)) == 0,
         "off": max(_off(face) for face in faces),
         "known": [astuple(surface) for surface in known],
         "on": on.tolist(),
-        "off_middles": farthest_off(known, on, vertices[joined[distinct]].mean(axis=1)),
-        "off_surfaces": farthest_off(known, on, vertices[joined[distinct]]),
+        "off_middles": farthest_off(known, on, vertices[corners].mean(axis=1)),
+        "off_surfaces": farthest_off(known, on, vertices[corners]),
         "off_others": max((_off(face) for face, found in zip(faces, which, strict=True) if found < 0), default=0.0),
     }
 
@@ -87,6 +89,7 @@ def _shared(faces: list[Any], n_points: list[int], places: FloatArray) -> list[t
     from OCP.TopLoc import TopLoc_Location
 
     found, first_of_edges = list[tuple[int, int]](), dict[int, list[int]]()
+    apart = FARTHEST_APART * float(np.ptp(places, axis=0).max())
     for face, first in zip(faces, n_points, strict=False):
         place = TopLoc_Location()
         mesh = BRep_Tool.Triangulation_s(face, place)
@@ -102,7 +105,7 @@ def _shared(faces: list[Any], n_points: list[int], places: FloatArray) -> list[t
             if len(others) == len(nodes):
                 ways = nodes, nodes[::-1]
                 off = [np.abs(places[others] - places[way]).max() for way in ways]
-                if min(off) <= FARTHEST_APART * float(np.ptp(places, axis=0).max()):
+                if min(off) <= apart:
                     found += [
                         pair for pair in zip(others, ways[int(np.argmin(off))], strict=True) if pair[0] != pair[1]
                     ]

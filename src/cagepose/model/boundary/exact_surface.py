@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -90,8 +92,24 @@ def exact_block(shape: Facets, number: int) -> Block:
 
 def surface_of(shape: Facets) -> ExactSurface:
     """Return a surface with its curves in the frame of its body. A ball that anything but circles trims, or one
-    with a notch, or a hollow one, stays facets.
+    with a notch, or a hollow one, stays facets. Those of the last few shapes are remembered: of a file it is asked what
+    is exact, and then a scene is built.
     """
+    place = (row.tobytes() for row in vars(shape.pose_body_shape).values())
+    return _surface_of(_Placed((shape.form, *place), shape))
+
+
+@dataclass(frozen=True)
+class _Placed:
+    """A shape that equals all others of its form at its place."""
+
+    key: tuple[object, ...]
+    shape: Facets = field(compare=False)
+
+
+@lru_cache(maxsize=16)
+def _surface_of(placed: _Placed) -> ExactSurface:
+    shape = placed.shape
     surfaces = [surface.changed(1.0, shape.pose_body_shape) for surface in shape.surfaces]
     first = np.array([*(surfaces.index(surface) for surface in surfaces), -1])
     vertices_m, triangles, on, flat_m = shape.nodes_body(), shape.triangles, first[shape.on], shape.flat_m

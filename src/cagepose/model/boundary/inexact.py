@@ -1,18 +1,45 @@
-"""How far a boundary is from what its triangles stand for: `off_curves`, `off_surfaces`."""
+"""What of a boundary is exact, and how far it is from what its triangles stand for: `exact_faces`, `off_curves`,
+`off_surfaces`.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections import Counter
+from typing import NamedTuple
 
 import numpy as np
 
 from cagepose.model.boundary.curves import CHAIN
+from cagepose.model.boundary.exact_surface import ExactSurface, surface_of
+from cagepose.model.facets import Facets
 from cagepose.model.finer import onto
-from cagepose.model.surfaces import PLANE
+from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE
+from cagepose.model.wording import counted
 
-if TYPE_CHECKING:
-    from cagepose.model.boundary.exact_surface import ExactSurface
-    from cagepose.model.facets import Facets
+
+class ExactFaces(NamedTuple):
+    """How many faces of a body are exact, by the kind of surface that they lie on, and how many triangles of others
+    are flat facets.
+    """
+
+    of_kinds: dict[str, int]
+    n_facets: int
+
+    @property
+    def in_words(self) -> str:
+        """Those that are exact, such as "12 planes, 4 cylinders"."""
+        return counted(*((number, kind, f"{kind}s") for kind, number in self.of_kinds.items()))
+
+
+def exact_faces(shape: Facets) -> ExactFaces:
+    """Return which faces of a body are exact; those of one surface that meet are one face."""
+    if not shape.surfaces:
+        return ExactFaces({}, len(shape.triangles))
+    regions = surface_of(shape).regions
+    is_exact = np.array(regions.is_exact)
+    found = Counter(face.kind for face, exact in zip(regions.surfaces, regions.is_exact, strict=True) if exact)
+    kinds = {kind: found[kind] for kind in (PLANE, CYLINDER, CONE, SPHERE) if found[kind]}
+    return ExactFaces(kinds, int((~is_exact[regions.of_triangles]).sum()))
 
 
 def off_curves(surface: ExactSurface) -> float:

@@ -14,10 +14,13 @@ from cagepose.model.surfaces import PLANE, Surface
 
 
 class Regions(NamedTuple):
-    """Which region each triangle is in, (m,), and on which surface each region lies."""
+    """Which region each triangle is in, (m,), on which surface each region lies, and whether its triangles stand for
+    that: else they are flat facets in one plane.
+    """
 
     of_triangles: IntArray
     surfaces: list[Surface]
+    is_exact: list[bool]
 
 
 def regions_on(
@@ -50,7 +53,7 @@ def regions_on(
         normal = flat.normals[which]
         point = flat.offsets[which] * normal
         found.append(Surface(PLANE, tuple(point.tolist()), tuple(normal.tolist())))
-    return Regions(of_triangles.reshape(-1), found)
+    return Regions(of_triangles.reshape(-1), found, (on[first] >= 0).tolist())
 
 
 def _connected(labels: IntArray, twins: IntArray) -> IntArray:
