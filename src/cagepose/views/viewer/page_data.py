@@ -242,7 +242,8 @@ class _Writer:
         return {
             "kind": act.kind,
             "name": act.name,
-            "at": _numbers(act.at_object_m / self.stage.size_m),
+            "at": None if act.at_object_m is None else _numbers(act.at_object_m / self.stage.size_m),
+            "atWorld": None if act.at_world_m is None else _numbers(self.stage.place(act.at_world_m)),
             "direction": _numbers(act.direction),
             "follows": act.follows,
             "to": None if act.to_world_m is None else _numbers(self.stage.place(act.to_world_m)),
