@@ -15,7 +15,7 @@ from cagepose.files.play_document import LENGTHS
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.files.words import LengthWords, line_of
 from cagepose.model.checks import FloatArray
-from cagepose.model.wording import short
+from cagepose.model.wording import duration, short
 from cagepose.studies.cage_verdict import CageVerdict, PathStep
 from cagepose.studies.play_rest import PlayRest
 from cagepose.studies.play_result import Play, PlayEnd
@@ -71,8 +71,8 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
             print_all(
                 Text(f"{load.name} has more than a weight and one force: where it leaves the object says cagepose run")
             )
-    proven = f", certificate {play.certificate_s * 1e3:.3g} ms" if play.certificate_s else ""
-    print_all(Text(f"analysis {play.analysis_s * 1e3:.3g} ms{proven}"))
+    proven = f", certificate {duration(play.certificate_s)}" if play.certificate_s else ""
+    print_all(Text(f"analysis {duration(play.analysis_s)}{proven}"))
 
 
 def _print_cage(cage: CageVerdict, words: LengthWords, unit: LengthUnit) -> None:
