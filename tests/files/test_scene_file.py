@@ -59,6 +59,12 @@ def test_euler_angles_and_quaternions_say_the_same(sample_text: str) -> None:
     assert np.allclose(angles.cage.points_world(), quaternion.cage.points_world(), atol=1e-17)
 
 
+def test_a_box_without_a_position_is_at_the_origin_of_its_part(sample_text: str) -> None:
+    assert "      position: [0, 0, 0]\n" in sample_text
+    boxes = parse_scene(sample_text.replace("      position: [0, 0, 0]\n", "")).object.boxes
+    assert boxes[0].pose_object_box.position_m.tolist() == [0.0, 0.0, 0.0]
+
+
 def test_points_have_default_names_or_their_own(sample_text: str) -> None:
     assert parse_scene(sample_text).cage.names == ("C1", "C2", "C3", "C4")
     named = sample_text.replace("[[4, 4, 0], [4, -4, 0], [-4, -4, 0], [-4, 4, 0]]", "{b: [4, 4, 0], a: [0, 0, 0]}")

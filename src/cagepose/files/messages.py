@@ -52,7 +52,7 @@ def schema_findings(error: ValidationError, data: object, model: type[BaseModel]
     """Turn all that pydantic found in ``data``, which was to be a ``model``, into problems."""
     findings = []
     for details in error.errors(include_url=False):
-        path = _file_path(details["loc"])
+        path = file_path(details["loc"])
         message = _message(details, path, data, model)
         findings.append(Finding(Problem(path, message), details["type"] == "extra_forbidden"))
     return findings
@@ -81,7 +81,7 @@ def shown(value: object) -> str:
             return f"of type {type(value).__name__}"
 
 
-def _file_path(location: tuple[Key, ...]) -> Path:
+def file_path(location: tuple[Key, ...]) -> Path:
     """Pydantic's location without what it adds: the form of points and friction, and a mark for keys."""
     at = 3 if location[:2] == ("cage", "bodies") else 1  # what a body has, a cage has
     if location[:1] == ("cage",) and location[at : at + 1] == ("points",):

@@ -67,7 +67,9 @@ class BoxModel(Mapping):
     """One rectangular block of the object."""
 
     size: Size = Field(description="Full edge lengths [x, y, z].", examples=[[10, 20, 30]])
-    position: Vector = Field(description="Centre of the box in the object's frame.", examples=[[0, 0, 0]])
+    position: Vector | None = Field(
+        None, description="Centre of the box in the object's frame; left out: its origin.", examples=[[0, 0, 0]]
+    )
     euler_zyx_deg: Vector | None = Field(
         None, description="How the box is turned in the object: yaw, pitch, roll in degrees.", examples=[[45, 0, 0]]
     )
