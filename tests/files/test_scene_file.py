@@ -166,7 +166,7 @@ def test_set_can_mend_a_broken_file(sample_text: str) -> None:
         ("=3", "the path is empty; write keys with dots, such as object.mass"),
         ("a..b=3", "'a..b' is not a path to a value; write keys with dots and indices in brackets,"
                    " such as object.boxes[0].size[2]"),
-        ("object.boxes[1].name=x", "object.boxes holds 1 values, so it has no index 1; give an index from 0 to 0"),
+        ("object.boxes[1].name=x", "object.boxes holds 1 value, so it has no index 1; give an index from 0 to 0"),
         ("object.boxes.size=3", "object.boxes is a list, which has no key 'size'; give an index from 0 to 0"),
         ("name.first=x", "name is a single value, which holds no 'first'; set name itself"),
         ("object.inertia[0]=1", "object.inertia is missing, so it has no index 0; write it into the scene, or set it as"

@@ -77,6 +77,15 @@ def coordinates(values: FloatArray, digits: int = 6) -> str:
     return f"({', '.join(short(value, digits, noise) for value in values.tolist())})"
 
 
+def number_of(count: int, one: str, many: str | None = None) -> str:
+    """Return how many there are of what; its plural is that of most words, if none is given.
+
+    >>> number_of(1, "contact"), number_of(12_000, "run"), number_of(2, "vertex", "vertices")
+    ('1 contact', '12,000 runs', '2 vertices')
+    """
+    return f"{count:,} {one if count == 1 else many or f'{one}s'}"
+
+
 def counted(*numbers: tuple[int, str, str]) -> str:
     """Return how many there are of what, each with its singular and its plural; of what there is none of, nothing.
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from cagepose.model.checks import FloatArray, ProblemList, finite_array
 from cagepose.model.load import Force
 from cagepose.model.scene import Scene
+from cagepose.model.wording import number_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +69,10 @@ class Variation:
         n_runs = len(next(iter(found.values()))) if found else 1
         for name, array in found.items():
             if len(array) != n_runs:
-                problems.add((name,), f"has {len(array)} rows and {next(iter(found))} {n_runs}; give one for each run")
+                problems.add(
+                    (name,),
+                    f"has {number_of(len(array), 'row')} and {next(iter(found))} {n_runs}; give one for each run",
+                )
         n_forces = len(_pushes(scene))
         if n_forces != 1 and any(name.startswith("force_") for name in found):
             problems.add(("force",), f"varies, but the scene has {n_forces}; it must be one")
