@@ -163,4 +163,4 @@ def test_a_spring_whose_tension_is_its_length_times_stiffness_is_linear_also_at_
     assert np.allclose(hessian[:3, :3], action.stiffness * np.eye(3))
     away = (here[0] + 1e-3, here[1], here[2])
     assert work_done(acts, away, upright, here, upright) == pytest.approx(0.5e-6 * action.stiffness, rel=1e-10)
-    assert longest_pull(acts, away, upright, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.02, 1.5) == 1.5
+    assert longest_pull(acts, away, upright, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.02, 1.5, 0.5) == 1.5

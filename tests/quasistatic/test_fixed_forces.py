@@ -19,12 +19,14 @@ from cagepose import (
     Pose,
     Run,
     Scene,
+    SceneError,
     Spring,
     Variation,
     margin,
     run,
     run_many,
 )
+from cagepose.sampling.batch_columns import BatchColumns
 from quasistatic.paths import path_of
 from sprung_scenes import cube
 
@@ -70,6 +72,21 @@ def test_a_bar_tips_where_its_weight_turns_it_over_against_a_fixed_force(force_n
     begins = int(np.argmax([abs(pose.euler_zyx[1]) > 1e-9 for pose in poses]))
     assert begins > 0
     assert poses[begins - 1].position_m[0] == pytest.approx(force_n * 0.05 / (0.1 * G), abs=0.1 * MM)
+
+
+def test_a_part_that_falls_across_a_fixed_force_begins_to_turn():
+    """As much force as weight, through the middle of a cube at the start: after a fall by z the arm of the force is z,
+    so that the spin is F z / (m k^2), and as both grow with the time, the turn is z^2 / (2 k^2); k^2 is a sixth of the
+    square of the edge. Explicit steps, 0.02 rad long, are short of that by one or two of them.
+    """
+    fixed = Force((1, 0, 0), magnitude_n=G, at_world_m=(0, 0, 0))
+    scene = Scene(cube(mass_kg=1.0), Cage([(0.5, 0.0, -0.5)]), [Load("fall", gravity=(0, 0, -G), forces=[fixed])])
+    poses = path_of(run(scene).phases[0])
+    drops = np.array([-pose.position_m[2] for pose in poses])
+    turns = np.array([abs(pose.euler_zyx[1]) for pose in poses])
+    early = (drops > 0.0) & (drops < 0.012)
+    assert early.sum() > 5
+    assert turns[early] == pytest.approx(drops[early] ** 2 / (2.0 * 0.04**2 / 6.0), abs=0.04)
 
 
 def test_a_part_ends_where_springs_balance_a_fixed_force():
@@ -144,6 +161,16 @@ def test_rows_of_a_batch_are_the_runs_to_the_last_bit_where_the_cage_is_misalign
         alone = run(Scene(scene.object, Cage(scene.cage.points_cage, pose=Pose(shift, euler_zyx=euler)), scene.loads))
         assert np.array_equal(rows.position_m[row, 0], alone.pose.position_m)
         assert rows.verdict[row] == alone.verdict
+
+
+def test_a_batch_varies_no_place_on_the_part_of_a_force_that_has_none():
+    scene = cornered(Force((1, -0.4, -0.5), magnitude_n=3.0, at_world_m=(-0.02, 0.004, 0.03)), Pose())
+    with pytest.raises(SceneError, match="the force acts at a point of the world"):
+        run_many(scene, Variation(force_at_object_m=[(0, 0, 0)]))
+    data = {"loads": [{"name": "push", "force": {"direction": [1, 0, 0], "at_world": [0, 0, 0], "magnitude": 1.0}}]}
+    takes = BatchColumns(data, "mm").takes
+    assert takes(("loads", 0, "force", "magnitude"))
+    assert not takes(("loads", 0, "force", "at_world", 0))  # a study builds a scene for each
 
 
 def test_a_rest_has_the_margin_of_the_same_force_that_rides():

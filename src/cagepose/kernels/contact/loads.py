@@ -237,9 +237,10 @@ def longest_pull(
     spin: Vector,
     turn_step_rad: float,
     size_m: float,
+    reach_m: float,
 ) -> float:
     """Return how much of a twist springs keep their direction for, and fixed forces their moment (5.31); inf: there are
-    none, or none of them changes.
+    none, or none of them changes. ``reach_m``: how far the object reaches from its centre of gravity.
 
     A spring whose tension is in proportion to its length has no part in that: its force is linear in the pose.
     """
@@ -249,7 +250,7 @@ def longest_pull(
         if action.kind == FIXED_FORCE:
             across, force = norm(cross(vector_from(action.vector), velocity)), norm(vector_from(action.vector))
             if across > 0.0:
-                amount = min(amount, ARCS_PER_TURN * turn_step_rad * size_m * force / across)
+                amount = min(amount, ARCS_PER_TURN * turn_step_rad * reach_m * force / across)
         if action.kind != SPRING:
             continue
         arm = arm_of(action, quaternion)
