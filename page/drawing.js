@@ -172,8 +172,8 @@ export class Drawing {
 
   // Where a load's arrow starts and ends: that of a force ends where it acts, that of a moment starts at the centre of
   // gravity; a spring leads to where it is held, or part of the way.
-  loadEnds(load, { cage }, pose) {
-    const at = carried(pose, load.at);
+  loadEnds(load, { cage, truth }, pose) {
+    const at = carried(pose, load.atWorld ? carried(inverse(truth), load.atWorld) : load.at);
     if (load.kind === "spring") {
       const way = sub(carried(cage[load.body], load.to), at);
       return [at, add(at, times(Math.min(1, this.sizes.longest_spring / (norm(way) || 1)), way))];
