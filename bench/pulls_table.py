@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 import shutil
 import statistics
-import threading
+import subprocess
+import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -21,10 +21,6 @@ from bench.rows import Row
 from cagepose import Pose, Run, Scene, run
 from cagepose.files.scene_file import read_scene_text
 from cagepose.runs.drives import displaced_after
-from cagepose.views.viewer.page import page as page_text
-from cagepose.views.viewer.playback import playback
-from cagepose.views.viewer.server import open_server
-from cagepose.views.viewer.what_if import WhatIf
 
 SCENES = Path(__file__).resolve().parents[1] / "scenes"
 PULLED = (
@@ -36,8 +32,8 @@ N_PULLS, N_MOVES = 30, 5
 """Of each scene; the pointer rests so often on the way of each."""
 LONGEST = 200.0
 """Pixels that the pointer goes, twice the greatest force that acts besides."""
-PORT = 18_737
-WAIT_MS, MOST_WAITS = 5, 2_000
+MOST_TRIES = 2_000
+WAIT_MS, MOST_WAITS = 15, 2_000
 
 
 def pull_rows() -> Iterator[Row]:
@@ -96,8 +92,8 @@ def _pulled(tab: Any, name: str) -> Row:
 
 
 def _place_on_object(tab: Any, box: Mapping[str, float], draw: np.random.Generator) -> list[float]:
-    """Return a pixel at which the part is seen, and nothing lies above it. A part that is gone is brought back."""
-    for _ in range(400):
+    """Return a pixel at which the part is seen, clear of what lies over the picture."""
+    for _ in range(MOST_TRIES):
         place = [draw.uniform(0.05, 0.95) * box["width"], draw.uniform(0.15, 0.8) * box["height"]]
         if tab.evaluate("([x, y]) => cagepose.isOnObject(x, y)", place):
             return place
@@ -162,10 +158,9 @@ def _wait(tab: Any, condition: str) -> None:
 
 @contextmanager
 def _served(scene_path: Path) -> Iterator[str]:
-    text = read_scene_text(scene_path)
-    what_if, scene_file = WhatIf(text), text.scene_file()
-    film = playback(run(scene_file.scene), scene_file.length_unit)
-    with open_server(page_text(film, what_if), what_if, "127.0.0.1", PORT) as server:
-        threading.Thread(target=partial(server.serve_forever, 0.02), daemon=True).start()
-        yield server.address
-        server.shutdown()
+    """Yield the address of a viewer in a process of its own, as users have it."""
+    command = [sys.executable, "-m", "cagepose", "view", str(scene_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as viewer:
+        assert viewer.stdout is not None
+        yield next(line for line in viewer.stdout if "look at" in line).split("look at ")[1].split()[0]
+        viewer.terminate()

@@ -339,7 +339,7 @@ window.cagepose = {
       touches: stage.shot(player.time).touches.map((touch) => stage.place(touch, look)),
       bodies: data.bodies.map((_, index) => stage.bodyPose(index, look).p), drive: stage.drive(player.time),
       camera: camera && { target: camera.target, half: camera.half, back: camera.axes()[2], perspective: camera.perspective },
-      isBusy: asker.isBusy, answerMs: asker.tookMs, hand: hand?.led && { ...hand.led, force: hand.force, shownForce: hand.shownForce, isHeld: Boolean(hand.at) },
+      isBusy: asker.isBusy, answerMs: asker.tookMs, hand: hand?.led && { ...hand.led, force: hand.force, shownForce: hand.shownForce, at: hand.at },
       picked: card.touch && data.names[card.touch.point], hasShadows: drawing?.world.hasShadows, built: drawing?.built };
   },
   fitted: () => drawing.content().map((place) => drawing.camera.project(place)), // apart: 12,000 places in a crowded scene
