@@ -123,14 +123,16 @@ export class Drawing {
     this.drawPoints(shot, look, pose);
     this.drawTouches(shot, look, pose);
     this.drawLoads(shot, look, pose);
-    this.drawHand(pose);
     this.drawMotion(shot, pose);
     this.drawTrace(time);
     if (!camera.isClose()) this.marks.ball(carried(pose, stage.data.center), this.sizes.ball - 1, this.paint.trace);
     this.marks.end();
     const scale = window.devicePixelRatio;
     this.world.draw(camera, scale);
+    const pull = this.pulling(pose);
+    if (pull) this.labels.push([pull.tip, this.hand.text, true]);
     this.overlay.write(this.labels, camera, stage.data, scale);
+    if (pull) this.overlay.arrow(camera.project(pull.at), camera.project(pull.tip), this.sizes.paint.hand);
   }
 
   get written() {
@@ -260,13 +262,12 @@ export class Drawing {
     }
   }
 
-  // The pull of a hand, from where it holds the object.
-  drawHand(pose) {
-    if (!this.hand) return;
-    const { at, pull, text } = this.hand, place = carried(pose, at), tip = add(place, times(this.camera.pixel(place), pull));
-    this.marks.ball(place, this.sizes.ball, this.paint.hand);
-    this.marks.arrow(place, tip, 1.3 * this.sizes.rod, this.paint.hand);
-    this.labels.push([tip, text, true]);
+  // Where a hand holds the object, and where it pulls to; null: it does not. It is as far off as that, so that the arrow is as
+  // long as the way of the pointer.
+  pulling(pose) {
+    if (!this.hand) return null;
+    const at = carried(pose, this.hand.at);
+    return { at, tip: add(at, times(this.camera.pixel(at), this.hand.pull)) };
   }
 
   // A spring, as a line that winds.

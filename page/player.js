@@ -1,6 +1,6 @@
 // The page: what time it is, how much motions are exaggerated, and everything that shows or changes that.
 
-import { add, norm, times } from "./geometry.js";
+import { add, carried, norm, sub, times } from "./geometry.js";
 import { Drawing } from "./drawing.js";
 import { ForceCurve, NOISE } from "./force.js";
 import { Asker } from "./asking.js";
@@ -12,6 +12,8 @@ import { Stage } from "./stage.js";
 import { $, digits, element } from "./words.js";
 
 const MOTION_S = 1, PAUSE_S = 0.35;
+const HOVER_MS = 60; // between two looks at what is under the pointer
+const NEAR = 0.25; // drawing units: so far is a part shown that a pull does not let come to rest
 const IN_A_ROW_MS = 400; // pictures farther apart than this were asked for one by one
 const LONGEST = 2.5; // times as long as before, an arrow of a force that a pull gives rise to; and so much is play shown too large
 
@@ -116,6 +118,7 @@ const chosen = new Map(); // exaggerations that somebody has set, by phase
 function replaceRun(answer) {
   showRun(answer, answer.phases.map((phase, index) => chosen.get(index) ?? phase.proposed));
   hand?.start(answer.grips);
+  showAhead();
 }
 
 // Shows the run of this scene as a hand has led it on from the end of a phase: all as large as before, or else it would jump.
@@ -125,6 +128,16 @@ function showLed(answer, from) {
   const kept = before > LONGEST * proposed ? proposed : before;
   const longest = Math.max(stage.data.led ? drawing?.greatestForce ?? 0 : data.greatestForce, answer.greatestForce / LONGEST);
   showRun(answer, [...exaggerations.slice(0, from + 1), kept], longest);
+  if (!answer.led.rests) seek(onItsWay(answer.led.from));
+  showAhead();
+}
+
+// When the object is last as near as this to where it rested, so that it does not get out of the picture.
+function onItsWay(place) {
+  const apart = (time) => norm(sub(carried(stage.truePose(time), data.center), place));
+  let time = end; // of shots alone: between two of them it may be inside of something
+  while (time > data.phases.at(-2).last && apart(time) > NEAR) time -= 1;
+  return time;
 }
 
 function showRun(answer, itsExaggerations, greatestForce = answer.greatestForce) {
@@ -138,13 +151,20 @@ function showRun(answer, itsExaggerations, greatestForce = answer.greatestForce)
   fill();
   pause();
   seek(carries ? 0 : end);
-  showAhead();
 }
 
 // What takes the way of a pointer that is pressed at a place of the object; null: it turns the view.
 function grabbed(place) {
   if (!panel) return null;
   return $("start").checked ? carryStart() : $("pull").checked && !drawing.camera.isClose() ? pullAt(place) : null;
+}
+
+// The pointer's looks say where it would pull.
+let lookedAt = 0;
+function hover({ buttons, offsetX, offsetY, timeStamp }) {
+  if (buttons || timeStamp - lookedAt < HOVER_MS) return;
+  lookedAt = timeStamp;
+  $("scene").classList.toggle("grab", $("pull").checked && !$("start").checked && !drawing.camera.isClose() && Boolean(drawing.placeOnObject(offsetX, offsetY)));
 }
 
 // Pulls at the object where it rests at the end of the phase on screen.
@@ -356,5 +376,6 @@ if (!data.points.length) $("points").parentElement.hidden = true;
 if (data.controls) panel = new Panel(data.controls, data.fileName, asker, replaceRun);
 if (panel && drawing) hand = new Hand(asker, data.grips, { values: () => panel.changed(), show: showLed, restart: () => panel.ask(), refuse: (why) => asker.complain([why], "answer") });
 $("pull").parentElement.hidden = !hand;
+if (hand) $("scene").addEventListener("pointermove", hover);
 show();
 drawing?.fit();

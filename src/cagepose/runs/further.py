@@ -28,8 +28,8 @@ GOES_ON: frozenset[Verdict] = AT_REST | STOPPED
 """After these verdicts another phase can begin."""
 METHOD = "quasistatic"
 """The paper's rules know one force alone."""
-LED = "led"
-"""The rule of the event that tells a whole way on which the object was led."""
+LED = "moved"
+"""The rule of the event that tells all of the way on which the object was led."""
 
 
 class Place(NamedTuple):

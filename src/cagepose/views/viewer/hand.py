@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cagepose.errors import SceneError
-from cagepose.files.units import LengthUnit, to_metres
+from cagepose.files.units import LengthUnit, from_metres, to_metres
 from cagepose.files.words import LengthWords
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
-from cagepose.runs.changes import as_seen
-from cagepose.runs.further import GOES_ON, LED, METHOD, Place, further, way_of
+from cagepose.model.wording import short
+from cagepose.runs.further import GOES_ON, METHOD, Place, further, way_of
 from cagepose.runs.pull import measure, pulled_load
 from cagepose.runs.run import Run
 from cagepose.studies.comparison import same_pose
@@ -135,8 +135,16 @@ def pulled(shown: Playback, stage: Stage, grip: Grip) -> dict[str, Any]:
     film = playback_led_on(shown, found)
     way = _thinned(way_of(found)) if found.verdict in GOES_ON else grip.way
     says = _words(found, grip, shown.length_unit)
-    led = {"phase": grip.phase, "way": [_row(place) for place in way], "says": says}
-    return {**page_data(film, Stage(film, stage)), "led": led}
+    after = Stage(film, stage)
+    last_rest = (grip.way[-1].pose if grip.way else run.phases[grip.phase].pose).transform(after.center_object_m)
+    led = {
+        "phase": grip.phase,
+        "way": [_row(place) for place in way],
+        "says": says,
+        "rests": found.verdict in GOES_ON,
+        "from": after.place(last_rest).tolist(),
+    }
+    return {**page_data(film, after), "led": led}
 
 
 def _row(place: Place) -> list[float]:
@@ -153,14 +161,17 @@ def _thinned(way: Sequence[Place]) -> list[Place]:
 def _words(found: Run, grip: Grip, length_unit: LengthUnit) -> str:
     last, is_pulled = found.phases[-1], bool(grip.force.any())
     if last.verdict == "escapes":
-        again = "let go, and it is back where it was held last" if is_pulled else "nothing holds it under its own loads"
-        return f"it gets away: {again}"
+        return "gets away; let go, and it is back at its last rest" if is_pulled else "gets away under its own loads"
     if last.verdict not in GOES_ON:
-        return f"no rest was found ({last.verdict}); the next pull begins where it rested last"
+        return f"no rest found ({last.verdict}); the next pull begins at its last rest"
     if is_pulled:
         return last.verdict
-    scene, led = found.scene, next((event for event in last.events if event.rule == LED), None)
-    seen = None if led is None else as_seen(led, last.start_pose, scene)
-    if led is None or seen is None or same_pose(scene, led, found.phases[-2].events[-1]):
+    scene, before = found.scene, found.phases[-2].events[-1]
+    if same_pose(scene, last.events[-1], before):
         return "it is back where it was"
-    return f"it stays, {LengthWords(length_unit, scene.size_m).amount(seen, 3)} from where it was"
+    center = scene.object.center_of_gravity_m
+    way_m = float(np.linalg.norm(last.pose.transform(center) - before.pose_world_object.transform(center)))
+    turned = 2.0 * math.acos(min(1.0, abs(float(last.pose.quaternion_wxyz @ before.pose_world_object.quaternion_wxyz))))
+    words = LengthWords(length_unit, scene.size_m)
+    length, angle = short(float(from_metres(way_m, length_unit)), 3, words.noise), short(math.degrees(turned), 3, 1e-6)
+    return f"it stays, moved by {length} {length_unit} and turned by {angle} deg"

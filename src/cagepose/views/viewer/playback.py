@@ -27,7 +27,7 @@ SHOTS_PER_MOTION = 24
 """One second of film for each motion."""
 MOTIONS_PER_DRIVE = 4
 """A whole drive takes as long as so many motions."""
-SHOTS_OF_A_LED_WAY = 12
+SHOTS_OF_A_LED_WAY = 24
 """At least: it may go around corners."""
 MOST_SHOTS = 4_800
 """A run has at most so many shots, so that each of thousands of motions has fewer. A failed run of 3,000 took 29 MB and
