@@ -317,12 +317,18 @@ class Stage:
         """Whether a motion is shown as it is, from one shot to another, as one is on which bodies are driven."""
         if self.cage(one) is not self.cage(other):
             return True
-        return not (self._fits(self._moved(one, other), 2) and self._meet(other, Look(one, LONG_AT, self.cage(other))))
+        moved = self._moved(one, other)
+        if self._stands(moved):
+            return False
+        return not (self._fits(moved, 2) and self._meet(other, Look(one, LONG_AT, self.cage(other))))
+
+    def _stands(self, moved: tuple[float, float]) -> bool:
+        return moved[0] < MOTION_AT_REST and moved[1] < MOTION_AT_REST * self.size_m
 
     def _proposed(self, reference: int, start: int, last: int) -> int:
         ends = [row.last_shot for row in self.shown.rows if start < row.last_shot <= last]
         moves = [self._moved(reference, shot) for shot in ends]
-        if all(turn < MOTION_AT_REST and way < MOTION_AT_REST * self.size_m for turn, way in moves):
+        if all(map(self._stands, moves)):
             return 1
         for k in reversed(EXAGGERATIONS):
             if all(self._fits(move, k) for move in moves) and all(
