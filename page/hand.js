@@ -34,20 +34,17 @@ export class Hand {
       this.refuse(refused);
       return null;
     }
-    if (!isLed) this.led = { phase: from, way: [], says: "" };
-    Object.assign(this, { at, pull: [0, 0, 0], asked: false });
-    return (way) => this.carry(way);
-  }
-
-  carry(way) {
-    if (!this.at) return; // the sliders have taken it away
-    if (way) this.pull = add(this.pull, way);
-    if (way ? !this.asked && norm(this.pull) < LEAST : !this.asked) return;
-    if (!way) this.pull = [0, 0, 0];
-    this.asked = true;
-    this.ask();
-    if (!way) this.at = null;
-    this.tell(this.led.says);
+    const begun = isLed ? this.led : { phase: from, way: [] };
+    let isPulled = false; // else it is a click
+    Object.assign(this, { at, pull: [0, 0, 0] });
+    return (way) => {
+      if (!this.at) return; // the sliders have taken it away
+      this.pull = way ? add(this.pull, way) : [0, 0, 0];
+      if (!isPulled && norm(this.pull) >= LEAST) [isPulled, this.led, this.says] = [true, begun, ""];
+      if (isPulled) this.ask();
+      if (!way) this.at = null;
+      if (isPulled) this.tell(this.says);
+    };
   }
 
   get grip() {
@@ -65,9 +62,9 @@ export class Hand {
       force = this.force;
       return { values: this.values(), pull: { phase: this.led.phase, way: this.led.way, at, force } };
     }, (answer) => {
-      Object.assign(this, { led: answer.led, shownForce: force });
+      Object.assign(this, { led: answer.led, says: answer.led.says, shownForce: force });
       this.show(answer, answer.led.phase);
-      this.tell(answer.led.says);
+      this.tell(this.says);
     });
   }
 
