@@ -99,6 +99,10 @@ def test_the_part_is_shown_where_the_run_goes_on_to_and_goes_back_to_the_start(w
         settle(page)
         assert shown_angles(page) == pytest.approx(start, abs=1e-6)
         assert page.locator("#hand").is_hidden()
+        with held(page, (1.0, 1.0)):  # a click
+            pass
+        assert state(page)["hand"] is None
+        assert state(page)["answers"] == 3
 
 
 def test_what_is_asked_for_and_not_yet_shown_is_said_and_a_slider_takes_the_part_away(
