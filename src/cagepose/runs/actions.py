@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -213,10 +214,15 @@ def load_size(scene: Scene, phase: int, pose: Pose, displaced: FloatArray | None
 
 def wrench_at(scene: Scene, phase: int, pose: Pose, displaced: FloatArray | None = None) -> Wrench:
     """Return the sum of all that acts in a phase while the object is at a pose; ``displaced`` as for `actions_of`."""
+    forces, moments = zip(*wrenches_at(scene, phase, pose, displaced), strict=True)
+    return Wrench(np.sum(forces, axis=0), np.sum(moments, axis=0))
+
+
+def wrenches_at(scene: Scene, phase: int, pose: Pose, displaced: FloatArray | None = None) -> Iterator[Wrench]:
+    """Yield what acts in a phase while the object is at a pose, one by one: the weight, forces, moments, then springs;
+    ``displaced`` as for `actions_of`.
+    """
     center = pose.transform(scene.object.center_of_gravity_m) - cage_middle(scene)
-    force, moment = np.zeros(3), np.zeros(3)
     for action in _actions_of_phase(scene, scene.loads[phase], displaced):
         one = acting(action, as_vector(center), pose.as_tuples()[1])
-        force += one.share * np.array(one.force)
-        moment += one.share * np.array(one.moment)
-    return Wrench(force, moment)
+        yield Wrench(one.share * np.array(one.force), one.share * np.array(one.moment))

@@ -36,20 +36,21 @@ DRAWN_DIGITS = 13
 """Behind the point, of places: a picture may be a millionth of the scene wide, or less."""
 
 
-def page_data(shown: Playback) -> dict[str, Any]:
-    """Return the data of a page: only dict, list, str, int, finite float, bool and None.
+def page_data(shown: Playback, stage: Stage | None = None) -> dict[str, Any]:
+    """Return the data of a page: only dict, list, str, int, finite float, bool and None. ``stage``: that of the
+    playback, if it is there already.
 
     Lengths are in drawing units (see `Stage`), but for the words and for ``origin``, which is in the scene's own unit.
     Axes, normals, forces and centres are in the object's frame, so that they go along with the object as it is shown.
     """
-    return _Writer(shown).document()
+    return _Writer(shown, stage or Stage(shown)).document()
 
 
 class _Writer:
-    def __init__(self, shown: Playback) -> None:
+    def __init__(self, shown: Playback, stage: Stage) -> None:
         self.shown = shown
         self.run = shown.run
-        self.stage = Stage(shown)
+        self.stage = stage
         self.usual_friction = chosen_method(self.run.scene, self.run.method).friction(self.run.scene)
         self.words = LengthWords(shown.length_unit, shown.run.scene.size_m)
         self.touches = list(dict.fromkeys(shot.touches for shot in shown.shots))
