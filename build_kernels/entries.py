@@ -76,7 +76,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield write_quaternions, (vectors, quaternions)
     yield write_euler_zyx, (quaternions, vectors)
     yield place_object, (geometry, ORIGIN, UPRIGHT, empty_placement(geometry))
-    yield find_gaps, (geometry, ORIGIN, UPRIGHT, 0.0, empty_placement(geometry), empty_gap_work(1))
+    yield find_gaps, (geometry, ORIGIN, UPRIGHT, 0.0, True, empty_placement(geometry), empty_gap_work(1))
     yield place_boxes_at, (boxes, ORIGIN, UPRIGHT, empty_placed_boxes(boxes))
 
     part = Part(none, vectors, vectors, np.zeros((1, 3, 3)), 1, empty_record(Body), ORIGIN)

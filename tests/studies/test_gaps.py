@@ -124,6 +124,34 @@ def test_what_touches_has_no_gap_at_all():
     assert set(found.gaps_m.tolist()) == {0.0}
 
 
+def ball_of_triangles(radius: float, place: tuple[float, float, float], name: str) -> Facets:
+    """Of 64 rings of 64 corners, turned about so that no corners of two balls face each other."""
+    heights = np.linspace(-1.0, 1.0, 66)[1:-1]
+    around = np.linspace(0.0, 2.0 * math.pi, 65)[:-1]
+    across = np.sqrt(1.0 - heights**2)[:, None]
+    rings = np.stack(np.broadcast_arrays(across * np.cos(around), across * np.sin(around), heights[:, None]), axis=2)
+    corners = np.concatenate([rings.reshape(-1, 3), [(0, 0, -1), (0, 0, 1)]]) * radius
+    triangles = []
+    for side in range(64):
+        beside = (side + 1) % 64
+        triangles += [(4096, beside, side), (4097, 4032 + side, 4032 + beside)]
+        for low in range(0, 4032, 64):
+            one, other = low + side, low + beside
+            triangles += [(one, other, other + 64), (one, other + 64, one + 64)]
+    return Facets(corners, triangles, pose_body_shape=Pose(place, euler_zyx=(0.3, 0.2, 0.1)), name=name)
+
+
+def test_of_bodies_of_thousands_of_triangles_the_narrowest_gap_is_told():
+    """There are too many pairs to ask all that are as near; the balls are convex, so the other search can be asked."""
+    scene = scene_of(
+        [ball_of_triangles(0.02, (0, 0, 0), "one")], [ball_of_triangles(0.03, (0.04, 0.03, 0.02), "other")]
+    )
+    near = nearest_on_object(scene.object, scene.object.pose_world_object, cage_at_start(scene.cage))
+    least = float(np.linalg.norm(near.places_world - near.feet_world))
+    assert 0.002 < least < 0.006
+    assert gaps_of(scene).gaps_m[0] == pytest.approx(least, rel=1e-9)
+
+
 def drawn_shape(random: np.random.Generator) -> Box | AnyShape:
     size = random.uniform(0.004, 0.02, 3)
     turned = Pose(euler_zyx=random.uniform(-3, 3, 3))

@@ -18,9 +18,9 @@ from cagepose.studies.touching import TouchFinder
 
 MOST_GAPS, ENOUGH = 2_000, 100
 """Gaps that there is memory for. Of a crowd, those beyond so many need not be found."""
-FIRST_REACH, USUAL_REACH, FARTHER = 1.0 / 64.0, 1.0 / 8.0, 4.0
-"""In sizes of the scene: how far the search looks at first; so many times as far then, until it has found enough, or
-all of the cage and has looked so far."""
+FIRST_REACH, USUAL_REACH, FARTHEST, FARTHER = 1.0 / 64.0, 1.0 / 8.0, 4.0, 4.0
+"""In sizes of the scene: how far the search looks at first, how far it does in any case, and at most. It looks so many
+times as far then, until it has found enough, or all of the cage."""
 SAME_GAP = 4.0
 """In touch tolerances: gaps of two parts along one direction that differ by less are one, as between parallel faces."""
 SAME_WAY = 1e-6
@@ -52,6 +52,9 @@ class Gaps(NamedTuple):
         """Return some of them, by their indices (m,)."""
         places, others = self.places_world[which], self.others_world[which]
         return Gaps(self.elements[which], self.parts[which], self.gaps_m[which], places, others)
+
+
+NO_GAPS = Gaps(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3)))
 
 
 class _Alike(NamedTuple):
@@ -98,24 +101,28 @@ class GapFinder:
         size_m, everything = self._scene.size_m, len(self._scene.cage.element_names)
         reach_m, least_failed = FIRST_REACH * size_m, np.inf
         rows = self._rows(pose, reach_m)
-        while rows is None:  # a crowd
+        while rows is None and reach_m > self._touch_m:  # a crowd
             least_failed, reach_m = reach_m, reach_m / FARTHER
             rows = self._rows(pose, reach_m)
-        while FARTHER * reach_m < min(least_failed, 4.0 * size_m):
+        rows = NO_GAPS if rows is None else rows
+        while FARTHER * reach_m < min(least_failed, FARTHEST * size_m):
             is_known = len(touching | set(rows.elements.tolist())) == everything
             if len(rows.elements) >= ENOUGH or (is_known and reach_m >= USUAL_REACH * size_m):
                 break
             reach_m *= FARTHER
             farther = self._rows(pose, reach_m)
             if farther is None:
+                least_failed = reach_m
                 break
             rows = farther
+        if not len(rows.elements) and least_failed < np.inf:
+            return self._rows(pose, FARTHEST * size_m, narrowest=True) or NO_GAPS
         return rows
 
-    def _rows(self, pose: Pose, reach_m: float) -> Gaps | None:
-        """Return the gaps up to a length; None: there are too many."""
-        touches = self._touches
-        n_found = find_gaps(touches.geometry, *pose.as_tuples(), reach_m, touches.placement, self._written)
+    def _rows(self, pose: Pose, reach_m: float, *, narrowest: bool = False) -> Gaps | None:
+        """Return the gaps up to a length, or the narrowest alone; None: there are too many."""
+        at, touches = pose.as_tuples(), self._touches
+        n_found = find_gaps(touches.geometry, *at, reach_m, narrowest, touches.placement, self._written)
         if n_found < 0:
             return None
         rows: Any = self._work.rows[:n_found]

@@ -13,7 +13,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
-from cagepose.kernels.algebra.vector import Vector, minus, plus, scaled, vector_from
+from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.circle import is_on_arc
 from cagepose.kernels.boundary.circle_meeting import common_at, is_core
 from cagepose.kernels.boundary.extents import extent_of, surely_apart
@@ -37,12 +37,15 @@ from cagepose.kernels.boundary.met import Meeting, swapped
 from cagepose.kernels.boundary.surfaces import crossing, has_surface
 from cagepose.kernels.boundary.tapered import nearest_on_axis
 from cagepose.kernels.boundary.touching import MOST_PAIRS, MOST_PLACES
-from cagepose.kernels.boundary.tree import boxes_apart
+from cagepose.kernels.boundary.tree import EDGES, FACES, SAFE, VERTICES, Node, boxes_apart
 from cagepose.kernels.boundary.within import root_has_surfaces
 from cagepose.kernels.circles.places import SADDLE, WHOLE, Place, write_place
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
 
+MOST_ASKED, MOST_FOR_NARROWEST = 1_000_000, 20_000_000
+"""Pairs of features, or of boxes around them, that one search asks: of bodies of thousands of triangles this takes some
+0.05 s; and twenty times that for the narrowest gap alone."""
 PLACES_OF_WHOLE = 4
 """Of a circle that is equally far all around, which stand for it."""
 SLACK_OF_TOUCH = 2.0
@@ -70,12 +73,13 @@ class Gap:
 
 
 class GapWork(NamedTuple):
-    """Memory for a search: the gaps that are found, how many there are, (1,), pairs of nodes and nodes that wait, and
-    the places of one circle.
+    """Memory for a search: the gaps that are found; how many there are, -1: too many, and how many pairs may still be
+    asked, (2,); how far it looks, (1,), metres; pairs of nodes and nodes that wait; and the places of one circle.
     """
 
     rows: Rows[Gap]
     used: IntArray
+    within: FloatArray
     pairs: IntArray
     waiting: IntArray
     places: Rows[Place]
@@ -84,7 +88,8 @@ class GapWork(NamedTuple):
 def empty_gap_work(n_rows: int) -> GapWork:
     """Return memory for so many gaps (plain Python)."""
     pairs, waiting = np.zeros((MOST_PAIRS, 2), np.int64), np.zeros(MOST_PAIRS, np.int64)
-    return GapWork(empty_rows(Gap, n_rows), np.zeros(1, np.int64), pairs, waiting, empty_rows(Place, MOST_PLACES))
+    rows, places = empty_rows(Gap, n_rows), empty_rows(Place, MOST_PLACES)
+    return GapWork(rows, np.zeros(2, np.int64), np.zeros(1), pairs, waiting, places)
 
 
 @entry
@@ -93,56 +98,82 @@ def find_gaps(
     position: Vector,
     quaternion: tuple[float, float, float, float],
     within_m: float,
+    narrowest: bool,
     placement: Placement,
     work: GapWork,
 ) -> int:
-    """Find the gaps of the object, at a pose, from the cage that are wider than what touches, up to a length.
+    """Find the gaps of the object, at a pose, from the cage that are wider than what touches, up to a length; or the
+    narrowest of these alone.
 
     Returns
     -------
     int
-        How many there are; -1: more than there is memory for.
+        How many there are; -1: more than there is memory for, or than can be found in short.
     """
     heed_interrupt()
     held = held_at(geometry, placement)
     place_boundary(held, position, quaternion)
-    work.used[0] = 0
+    work.used[0], work.used[1] = 0, MOST_FOR_NARROWEST if narrowest else MOST_ASKED
+    work.within[0] = within_m
     for body in range(number_of_bodies(geometry.cage)):
         cage = cage_at(geometry, body)
         for own in range(3):
             for other in range(3):
-                if work.used[0] >= 0:
-                    descend(geometry, held, own, cage, other, within_m, work)
+                if work.used[0] >= 0 and may_have_gaps(own, held.own.nodes[own], other, cage.own.nodes[other]):
+                    descend(geometry, held, own, cage, other, narrowest, work)
     return int(work.used[0])
 
 
 @kernel
+def may_have_gaps(root: int, one: Node, other_root: int, other: Node) -> bool:
+    """Whether features of two trees can have a gap: a face with vertices and circles alone."""
+    if root == FACES:
+        return other_root == VERTICES or (other_root == EDGES and other.has_circles)
+    return other_root != FACES or root == VERTICES or one.has_circles
+
+
+@kernel
+def ask_one_more(work: GapWork) -> bool:
+    """Count a pair; False: there are too many."""
+    work.used[1] -= 1
+    if work.used[1] < 0:
+        work.used[0] = -1
+    return bool(work.used[0] >= 0)
+
+
+@kernel
 def descend(
-    geometry: Geometry, held: PlacedBoundary, own: int, cage: PlacedBoundary, other: int, within_m: float, work: GapWork
+    geometry: Geometry, held: PlacedBoundary, own: int, cage: PlacedBoundary, other: int, narrowest: bool, work: GapWork
 ) -> None:
     """Append the gaps of features below a node of each body's trees."""
     work.pairs[0, 0], work.pairs[0, 1] = own, other
     n_waiting = 1
-    while n_waiting > 0 and work.used[0] >= 0:
+    while n_waiting > 0 and ask_one_more(work):
         n_waiting -= 1
         at, cage_at_ = work.pairs[n_waiting, 0], work.pairs[n_waiting, 1]
         one, two = held.own.nodes[at], cage.own.nodes[cage_at_]
         if one.first == one.last or two.first == two.last:
             continue
         box, cage_box = box_of(held, at), box_of(cage, cage_at_)
-        if boxes_apart(box, cage_box) > within_m:
+        if boxes_apart(box, cage_box) > work.within[0]:
             continue
         if one.left < 0 and two.left < 0:
             for i in range(one.first, one.last):
                 place_feature(held, i)
                 for j in range(two.first, two.last):
+                    if not ask_one_more(work):
+                        return
                     place_feature(cage, j)
-                    add_gaps(geometry, held, i, cage, j, within_m, work)
+                    add_gaps(geometry, held, i, cage, j, narrowest, work)
             continue
         divides_held = two.left < 0 or (one.left >= 0 and max(box.half) >= max(cage_box.half))
-        for side in range(2):
-            left, right = (one.left, one.right) if divides_held else (two.left, two.right)
-            child = left if side == 0 else right
+        left, right = (one.left, one.right) if divides_held else (two.left, two.right)
+        if divides_held:
+            is_left_near = boxes_apart(box_of(held, left), cage_box) < boxes_apart(box_of(held, right), cage_box)
+        else:
+            is_left_near = boxes_apart(box, box_of(cage, left)) < boxes_apart(box, box_of(cage, right))
+        for side in range(2):  # the nearer one is asked first
+            child = left if (side == 1) == is_left_near else right
             work.pairs[n_waiting, 0] = child if divides_held else at
             work.pairs[n_waiting, 1] = cage_at_ if divides_held else child
             n_waiting += 1
@@ -150,14 +181,17 @@ def descend(
 
 @kernel
 def add_gaps(
-    geometry: Geometry, held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, within_m: float, work: GapWork
+    geometry: Geometry, held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, narrowest: bool, work: GapWork
 ) -> None:
     """Append the gaps of two features."""
     one, other = held.features[i], cage.features[j]
-    if surely_apart(one, extent_of(one), other) > within_m:
+    if surely_apart(one, extent_of(one), other) > work.within[0]:
         return
+    if narrowest and one.kind == VERTEX and other.kind == VERTEX:  # no gap is wider than these are apart
+        apart_m = norm(minus(vector_from(one.point), vector_from(other.point)))
+        work.within[0] = min(work.within[0], SAFE * max(apart_m, geometry.touch_m))
     if one.kind != CIRCLE and other.kind != CIRCLE:
-        add_gap(geometry, held, i, cage, j, straight_gap(held, i, cage, j), within_m, work)
+        add_gap(geometry, held, i, cage, j, straight_gap(held, i, cage, j), narrowest, work)
         return
     circle = one if one.kind == CIRCLE else other
     n_places = find_circle_places(one, other, geometry.touch_m, work.places)
@@ -170,7 +204,7 @@ def add_gaps(
         place = work.places[k]
         if place.kind != SADDLE and is_on_arc(circle, place.angle, SLACK_OF_TOUCH * geometry.touch_m):
             met = circle_gap(held, i, cage, j, place)
-            add_gap(geometry, held, i, cage, j, met, within_m, work)
+            add_gap(geometry, held, i, cage, j, met, narrowest, work)
 
 
 @kernel
@@ -218,12 +252,12 @@ def add_gap(
     cage: PlacedBoundary,
     j: int,
     met: Meeting,
-    within_m: float,
+    narrowest: bool,
     work: GapWork,
 ) -> None:
     """Append a gap if it is one: both features reach there, and nothing is between them."""
     touch_m = geometry.touch_m
-    if not met.is_one or not touch_m < met.gap <= within_m:
+    if not met.is_one or not touch_m < met.gap <= work.within[0]:
         return
     slack = slack_of(held.own.features[i], cage.own.features[j], touch_m)
     if not both_reach(held, i, cage, j, met, slack, SLACK_OF_TOUCH * touch_m):
@@ -233,6 +267,8 @@ def add_gap(
     for body in range(number_of_bodies(geometry.cage)):
         if is_between(cage_at(geometry, body), met, touch_m, work.waiting):
             return
+    if narrowest:
+        work.used[0], work.within[0] = 0, met.gap
     at = work.used[0]
     if at == len(work.rows):
         work.used[0] = -1
