@@ -15,6 +15,7 @@ from cagepose.kernels.algebra.program_bound import extents
 from cagepose.kernels.algebra.record import dtype_of, empty_record, empty_rows
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
 from cagepose.kernels.boundary.features import NO_BOUNDARY, Bodies, empty_placing
+from cagepose.kernels.boundary.gaps import empty_gap_work, find_gaps
 from cagepose.kernels.boundary.geometry import Geometry, empty_cage, empty_placement, overlap_at, place_object
 from cagepose.kernels.boundary.overlap import empty_overlap_work
 from cagepose.kernels.collision.boxes import BoxesAndPoints, empty_placed_boxes, place_boxes_at
@@ -75,6 +76,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield write_quaternions, (vectors, quaternions)
     yield write_euler_zyx, (quaternions, vectors)
     yield place_object, (geometry, ORIGIN, UPRIGHT, empty_placement(geometry))
+    yield find_gaps, (geometry, ORIGIN, UPRIGHT, 0.0, True, empty_placement(geometry), empty_gap_work(1))
     yield place_boxes_at, (boxes, ORIGIN, UPRIGHT, empty_placed_boxes(boxes))
 
     part = Part(none, vectors, vectors, np.zeros((1, 3, 3)), 1, empty_record(Body), ORIGIN)

@@ -23,7 +23,7 @@ export class Card {
     $("card").hidden = !touch;
     if (!touch) return;
     const normal = rotated(shot.pose.q, touch.normal).map((value) => digits(value, DIRECTION_NOISE));
-    const lines = [["gap", touch.gap === null ? "touches; measured where a phase ends" : `${touch.gap.toPrecision(2)} ${data.unit}`],
+    const lines = [["gap", "none: they touch"],
       ["normal", `(${normal.map((value) => +value.toPrecision(4)).join(", ")})`]];
     if (touch.force) {
       const { normal: along, across } = stage.parts(touch);

@@ -3,19 +3,22 @@
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, LineSegments } from "three";
 import { add, carried, composed, cross, dot, inverse, norm, rotated, samePose, sub, times, turnedTo, unit } from "./geometry.js";
 import { Camera } from "./camera.js";
+import { Cap, WallCuts } from "./caps.js";
 import { color, Marks } from "./marks.js";
 import { Overlay } from "./overlay.js";
+import { elementAt, hitAt, PICKED } from "./picking.js";
+import { Section } from "./section.js";
 import { Body, Holes, Shape, Walls } from "./solids.js";
 import { World } from "./world.js";
 
 const RING = 16; // pixels about a contact that is looked at closely
 const COILS = 7, COIL_POINTS = 8, STRAIGHT_ENDS = 0.15; // of a spring
 const CLOSE_UP = 0.008, TILT = 0.25; // half the height of a picture of one contact, and how far from along its plane
-const PICKED = 14; // pixels from a mark that is clicked
 
 export class Drawing {
-  constructor(stage, exaggerations, canvas, overlay, { covered, changed, clicked, grabbed }) {
+  constructor(stage, exaggerations, gaps, canvas, overlay, { covered, changed, clicked, grabbed, turned }) {
     this.canvas = canvas;
+    this.gaps = gaps;
     this.sizes = stage.data.look; // sizes, in pixels unless look.py says otherwise
     this.paint = Object.fromEntries(Object.entries(this.sizes.paint).map(([name, hex]) => [name, color(hex)]));
     this.world = new World(canvas, stage.data);
@@ -25,13 +28,17 @@ export class Drawing {
     for (const line of [this.trace, this.ghost]) line.frustumCulled = false;
     this.world.scene.add(this.marks.group, this.trace, this.ghost);
     this.overlay = new Overlay(overlay);
+    this.section = new Section(this.paint.section);
     this.time = stage.shots.length - 1;
     this.pointLook = "pin";
     this.isGlass = false;
     this.take(stage, exaggerations);
     this.allNames = stage.data.names.length <= this.sizes.few_names;
-    this.camera = new Camera(canvas, stage.data, { content: () => this.content(), under: (x, y) => this.under(x, y), covered, changed, clicked: (x, y) => clicked(this.touchAt(x, y)),
-      grabbed: (x, y) => { const place = this.placeOnObject(x, y); return place && grabbed(place); } });
+    this.camera = new Camera(canvas, stage.data, { content: () => this.content(), under: (x, y) => this.under(x, y), covered, changed, clicked: (x, y) => clicked(this.touchAt(x, y), () => elementAt(this, x, y)),
+      grabbed: (x, y) => {
+        const handle = this.section.grab(x, y, this.camera, () => turned(this.section)), place = handle ? null : this.placeOnObject(x, y);
+        return handle ?? (place && grabbed(place));
+      } });
     this.camera.fit(); // with loads and forces, whose arrows have a camera by now
   }
 
@@ -70,17 +77,31 @@ export class Drawing {
     this.bodies = data.bodies.map(({ form }) => new Body(shapes.get(form), this.cageHoles, { face: paint.cage, edge: paint.cageEdge }, isSoftware));
     this.walls = new Walls(data.holes, data.forms, { face: paint.objectWall, edge: paint.objectEdge });
     this.cageWalls = new Walls(data.cageHoles, data.forms, { face: paint.cageWall, edge: paint.cageEdge });
-    this.things = [this.object, ...this.bodies, this.walls, this.cageWalls];
+    this.caps = [this.object, ...this.bodies].map((body, which) => (which
+      ? new Cap(body, this.cageHoles, { face: paint.cage, edge: paint.cageEdge }, 0, which % 2 ? -1 : 1)
+      : new Cap(body, this.holes, { face: paint.object, edge: paint.objectEdge }, 1, 1)));
+    this.wallCuts = [new WallCuts(this.walls, paint.objectEdge), new WallCuts(this.cageWalls, paint.cageEdge)];
+    this.solids = [this.object, ...this.bodies, this.walls, this.cageWalls];
+    this.things = [...this.solids, ...this.caps, ...this.wallCuts];
     this.world.scene.add(...this.things.map((thing) => thing.group));
     this.glaze(this.isGlass);
   }
 
-  // Whether the object is seen through; bodies of the cage that would hide it always are.
+  // Whether the object is seen through; bodies of the cage that would hide it always are, unless they are cut open.
   glaze(isGlass) {
     this.isGlass = isGlass;
     this.object.seeThrough(isGlass ? this.sizes.seen_through : 1);
-    const reach = this.object.reach;
-    for (const body of this.bodies) body.seeThrough(body.reach > this.sizes.large * reach ? this.sizes.glass : 1);
+    const reach = this.object.reach, isCut = Boolean(this.section.plane);
+    for (const body of this.bodies) body.seeInto(!isCut && body.reach > this.sizes.large * reach ? this.sizes.glass : 1);
+    const planes = isCut ? this.section.three : null;
+    for (const solid of this.solids) solid.clip(planes);
+    this.marks.clip(planes);
+  }
+
+  // Cuts across an axis, through the middle of the object; null: nothing is cut.
+  cut(axis) {
+    this.section.choose(axis, carried(this.shown(this.time).pose, this.stage.data.center), this.stage.data.radius, this.camera.axes()[2]);
+    this.glaze(this.isGlass);
   }
 
   layGround() {
@@ -120,18 +141,23 @@ export class Drawing {
     this.object.show(pose, camera);
     this.bodies.forEach((body, index) => body.show(stage.bodyPose(index, look), camera));
     this.showHoles(look, pose);
+    this.section.update(camera);
+    for (const cut of [...this.caps, ...this.wallCuts]) cut.show(this.section.plane, camera);
     this.drawPoints(shot, look, pose);
     this.drawTouches(shot, look, pose);
     this.drawLoads(shot, look, pose);
     this.drawMotion(shot, pose);
     this.drawTrace(time);
+    this.section.draw(this.marks, camera, this.sizes);
     if (!camera.isClose()) this.marks.ball(carried(pose, stage.data.center), this.sizes.ball - 1, this.paint.trace);
     this.marks.end();
     const scale = window.devicePixelRatio;
     this.world.draw(camera, scale);
     const pull = this.pulling(pose);
     if (pull) this.labels.push([pull.tip, this.hand.text, true]);
-    this.overlay.write(this.labels, camera, stage.data, scale);
+    const dimensions = this.gaps.dimensions(time, look, pose).filter(({ ends }) => !ends.every((end) => this.section.isCutAway(end)));
+    for (const { ends, text } of dimensions) this.labels.unshift([times(0.5, add(...ends)), text, true, this.sizes.paint.gap]);
+    this.overlay.write(this.labels, dimensions, camera, stage.data, scale);
     if (pull) this.overlay.arrow(camera.project(pull.at), camera.project(pull.tip), this.sizes.paint.hand);
   }
 
@@ -210,7 +236,8 @@ export class Drawing {
       if (isPoint && this.pointLook === "pin") this.drawPin(point, this.outOf(index, shot, pose));
       if (kind !== "free" || this.pointLook === "ball") places.forEach((place) => this.mark(place, kind));
       const counts = kind === "reached" || (kind === "touching" && (touching.size <= this.sizes.few_names || pressing.has(index)));
-      if (counts || this.allNames) this.labels.push([places[0] ?? this.namedPlace(index - data.points.length, look), name, kind !== "free"]);
+      const named = places[0] ?? this.namedPlace(index - data.points.length, look);
+      if (counts || (this.allNames && !this.section.isCutAway(named))) this.labels.push([named, name, kind !== "free"]);
     });
   }
 
@@ -334,6 +361,10 @@ export class Drawing {
 
   // The place of the object that is seen at a pixel, be it through a body of glass; null: it is not seen there.
   placeOnObject(x, y) {
+    if (this.section.plane) {
+      const { which, nearest, from, direction } = hitAt(this, x, y);
+      return which === -1 ? add(this.camera.target, add(from, times(nearest, direction))) : null;
+    }
     const [from, direction] = this.camera.ray(x, y);
     const nearest = this.object.hit(from, direction);
     const isHidden = this.bodies.some((body) => !body.isGlass && body.hit(from, direction) < nearest);
@@ -349,8 +380,7 @@ export class Drawing {
   under(x, y) {
     const touch = this.touchAt(x, y);
     if (touch) return this.stage.place(touch, this.shown(this.time).look);
-    const [from, direction] = this.camera.ray(x, y);
-    const nearest = Math.min(...[this.object, ...this.bodies].map((body) => body.hit(from, direction)));
+    const { nearest, from, direction } = hitAt(this, x, y);
     return Number.isFinite(nearest) ? add(this.camera.target, add(from, times(nearest, direction))) : null;
   }
 

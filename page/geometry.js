@@ -51,3 +51,9 @@ export function turnedTo(direction) {
   const length = Math.hypot(...q);
   return q.map((value) => value / length);
 }
+
+// Two unit vectors in a plane, so that the normal is the third.
+export function across(normal) {
+  const one = unit(cross(Math.abs(normal[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], normal));
+  return [one, cross(normal, one)];
+}

@@ -19,10 +19,15 @@ export class Marks {
     this.head = head; // of an arrow: radius and length, pixels
     this.group = new Group();
     const [seen, behind] = [{ depthFunc: LessEqualDepth }, { depthFunc: GreaterDepth, transparent: true, opacity: faint, depthWrite: false }].map((look) => markMaterial(look, isSoftware));
-    this.pins = new Heap([seen]); // bodies of the cage: they throw shadows, and are hidden
+    this.pins = new Heap([markMaterial({ depthFunc: LessEqualDepth, clipShadows: true }, isSoftware)]); // bodies of the cage: they throw shadows, and are hidden
     this.others = new Heap([seen, behind]);
     this.pins.meshes[0].castShadow = true;
     this.group.add(...this.pins.meshes, ...this.others.meshes);
+  }
+
+  // Leaves what of the cage's points is behind planes; null: all of them.
+  clip(planes) {
+    this.pins.meshes[0].material.clippingPlanes = planes;
   }
 
   begin(camera) {

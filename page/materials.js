@@ -1,11 +1,63 @@
 // What bodies and marks are made of. Without a graphics card light is worked out at corners alone, and shadows are none:
 // for every pixel it would cost more than all else.
 
-import { MeshLambertMaterial } from "three";
+import { DoubleSide, LineBasicMaterial, MeshBasicMaterial, MeshLambertMaterial } from "three";
+import { across, add, dot, times } from "./geometry.js";
+
+const HATCH = 12; // pixels between the lines of a hatch, about
 
 // Of a body: it leaves out what lies in holes.
 export function faceMaterial(look, holes, isSoftware) {
-  return made({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, ...look }, isSoftware, holes);
+  return made({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, clipShadows: true, ...look }, isSoftware, holes);
+}
+
+// Of a body that is seen through: it marks what of it is nearest to the eye.
+export function hiddenMaterial(holes) {
+  const look = { colorWrite: false, transparent: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4 };
+  const material = new MeshBasicMaterial(look);
+  if (holes.count) leaveOut(material, holes);
+  return material;
+}
+
+// Of the lines around a cut.
+export function lineMaterial(color, holes) {
+  const material = new LineBasicMaterial({ color });
+  if (holes.count) leaveOut(material, holes);
+  return material;
+}
+
+function leaveOut(material, holes) {
+  material.onBeforeCompile = (shader) => cutHoles(shader, holes);
+  material.customProgramCacheKey = () => `holes ${holes.count}`;
+}
+
+// Of a cut: the colour of its body, with lines at an angle; `slant` is 1 or -1. Where cuts lie on each other, that with the
+// higher rank is seen.
+export function capMaterial({ face, edge, slant }, rank, holes) {
+  const material = new MeshBasicMaterial({ color: face, side: DoubleSide, fog: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 8 - 4 * rank });
+  const uniforms = { hatchWay: { value: [0, 0, 0] }, hatchStart: { value: 0 }, hatchColor: { value: edge } };
+  material.onBeforeCompile = (shader) => {
+    if (holes.count) cutHoles(shader, holes);
+    Object.assign(shader.uniforms, uniforms);
+    shader.vertexShader = shader.vertexShader.replace("#include <common>", "#include <common>\nuniform vec3 hatchWay;\nvarying float vHatch;")
+      .replace("#include <begin_vertex>", "#include <begin_vertex>\nvHatch = dot(hatchWay, (modelMatrix * vec4(position, 1.0)).xyz);");
+    shader.fragmentShader = shader.fragmentShader.replace("#include <common>", "#include <common>\nuniform float hatchStart;\nuniform vec3 hatchColor;\nvarying float vHatch;")
+      .replace("#include <color_fragment>", `#include <color_fragment>
+        float hatched = vHatch + hatchStart, wide = fwidth(vHatch);
+        float apart = abs(fract(hatched) - 0.5) / max(wide, 1e-9);
+        diffuseColor.rgb = mix(hatchColor, diffuseColor.rgb, clamp(apart, 0.45, 1.0));`);
+  };
+  material.customProgramCacheKey = () => `cap, holes ${holes.count}`;
+  // As far apart as suits the picture, in steps, and fixed to the scene: else they would swim as one zooms and moves.
+  material.hatch = ({ normal }, camera) => {
+    const [one, other] = across(normal);
+    const step = 2 ** Math.round(Math.log2(HATCH * camera.pixel()));
+    const way = times(Math.SQRT1_2 / step, add(one, times(slant, other)));
+    const start = dot(way, camera.target);
+    uniforms.hatchWay.value = way;
+    uniforms.hatchStart.value = start - Math.floor(start);
+  };
+  return material;
 }
 
 // Of marks, each of which has a colour of its own.
@@ -45,6 +97,7 @@ function lightCorners(shader) {
     vLit = mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, linear));`);
   shader.fragmentShader = `#include <common>
     #include <fog_pars_fragment>
+    #include <clipping_planes_pars_fragment>
     uniform float opacity;
     varying vec3 vLit;
     void main() {

@@ -1,8 +1,11 @@
 // What is written over the picture: names, axes and a scale.
 
+import { add, times } from "./geometry.js";
 import { laidOut } from "./labels.js";
 
-const PAPER = "#f6f7f9", HEIGHT = 13, HEAD = 14;
+const PAPER = "#f6f7f9", GAP = "#7b2d8e", HEIGHT = 13, HEAD = 14;
+const TIP = [8, 3]; // of a dimension's arrow: length, and half its width
+const ROOM = 24, OUTSIDE = 16; // pixels: a shorter dimension has its arrows outside, so long
 
 export class Overlay {
   constructor(canvas) {
@@ -10,8 +13,9 @@ export class Overlay {
     this.written = [];
   }
 
-  // `labels` are places, names, and whether they matter: those that do choose their places first.
-  write(labels, camera, data, scale) {
+  // `labels` are places, names, and whether they matter: those that do choose their places first. `dimensions` have two
+  // ends, and the normal that leads from the one to the other.
+  write(labels, dimensions, camera, data, scale) {
     const [width, height] = camera.size();
     if (this.canvas.width !== Math.round(width * scale)) this.canvas.width = Math.round(width * scale); // setting it anew, even to the same, costs a frame
     if (this.canvas.height !== Math.round(height * scale)) this.canvas.height = Math.round(height * scale);
@@ -19,13 +23,16 @@ export class Overlay {
     pen.setTransform(scale, 0, 0, scale, 0, 0);
     pen.font = `${HEIGHT}px system-ui, sans-serif`;
     pen.clearRect(0, 0, width, height);
-    const seen = labels.filter(([place]) => camera.isAhead(place)).map(([place, text, isLoud]) => ({ place: camera.project(place), text, isLoud, size: [pen.measureText(text).width, HEIGHT] }))
+    for (const { ends: [from, to], normal } of dimensions) {
+      if (camera.isAhead(from) && camera.isAhead(to)) this.dimension(...[from, to, add(to, times(camera.pixel(to), normal))].map((place) => camera.project(place)));
+    }
+    const seen = labels.filter(([place]) => camera.isAhead(place)).map(([place, text, isLoud, color]) => ({ place: camera.project(place), text, isLoud, color, size: [pen.measureText(text).width, HEIGHT] }))
       .filter(({ place: [x, y] }) => x > -20 && y > -20 && x < width + 20 && y < height + 20).sort((one, other) => other.isLoud - one.isLoud);
     const corners = laidOut(seen, [width, height]);
     this.written = [];
-    seen.forEach(({ text, isLoud, size }, which) => {
+    seen.forEach(({ text, isLoud, size, color }, which) => {
       if (!corners[which]) return;
-      this.text(text, corners[which][0], corners[which][1] + 0.85 * HEIGHT, isLoud ? "#000" : "#666");
+      this.text(text, corners[which][0], corners[which][1] + 0.85 * HEIGHT, color ?? (isLoud ? "#000" : "#666"));
       this.written.push({ text, corner: corners[which], size });
     });
     this.drawAxes(camera, height);
@@ -41,9 +48,24 @@ export class Overlay {
     this.pen.fillText(text, x, y);
   }
 
-  line(from, to, color) {
+  // A line between two ends, toward a third place, with arrows at both; they point at each other where there is no room
+  // between.
+  dimension(from, to, beyond) {
+    const length = Math.hypot(to[0] - from[0], to[1] - from[1]), toward = [beyond[0] - to[0], beyond[1] - to[1]];
+    const size = Math.hypot(...toward) || 1, way = toward.map((part) => part / size);
+    const on = ([x, y], along, aside = 0) => [x + along * way[0] - aside * way[1], y + along * way[1] + aside * way[0]];
+    const isNarrow = length < ROOM;
+    for (const [color, width] of [[PAPER, 4.5], [GAP, 1.8]]) {
+      this.line(...(isNarrow ? [on(from, -OUTSIDE), on(to, OUTSIDE)] : [from, to]), color, width);
+      [[from, isNarrow ? -1 : 1], [to, isNarrow ? 1 : -1]].forEach(([end, side]) => {
+        for (const aside of [TIP[1], -TIP[1]]) this.line(end, on(end, side * TIP[0], aside), color, width);
+      });
+    }
+  }
+
+  line(from, to, color, width = 2) {
     this.pen.strokeStyle = color;
-    this.pen.lineWidth = 2;
+    this.pen.lineWidth = width;
     this.pen.beginPath();
     this.pen.moveTo(...from);
     this.pen.lineTo(...to);

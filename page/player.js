@@ -5,6 +5,7 @@ import { Drawing } from "./drawing.js";
 import { ForceCurve, NOISE } from "./force.js";
 import { Asker } from "./asking.js";
 import { Card } from "./card.js";
+import { Gaps } from "./gaps.js";
 import { Hand } from "./hand.js";
 import { Panel } from "./panel.js";
 import { Plot } from "./plot.js";
@@ -35,9 +36,11 @@ const card = new Card((touch) => {
   exaggerate(1); // what is exaggerated touches to first order only
   drawing.zoomTo(touch);
 }, refresh);
+const gaps = new Gaps(refresh);
+gaps.take(data, stage);
 try {
-  drawing = new Drawing(stage, exaggerations, $("scene"), $("labels"), {
-    covered: () => $("bar").offsetTop + $("bar").offsetHeight, changed: refresh, clicked: (touch) => { card.pick(touch); refresh(); }, grabbed });
+  drawing = new Drawing(stage, exaggerations, gaps, $("scene"), $("labels"), {
+    covered: () => $("bar").offsetTop + $("bar").offsetHeight, changed: refresh, clicked: (touch, element) => { card.pick(touch); gaps.pick(touch ? null : element()); refresh(); }, grabbed, turned: tellSection });
 } catch (error) {
   $("trouble").textContent = `No picture: ${error.message}. All else on this page works.`;
   $("trouble").hidden = false;
@@ -145,6 +148,7 @@ function showRun(answer, itsExaggerations, greatestForce = answer.greatestForce)
   stage = new Stage(data);
   end = stage.shots.length - 1;
   exaggerations = itsExaggerations;
+  gaps.take(data, stage);
   drawing?.take(stage, exaggerations, greatestForce);
   card.pick(null);
   player.answers += 1;
@@ -191,6 +195,14 @@ function carryStart() {
     way = add(way, times(data.unitsPerDrawing, bit));
     panel.moveStart(way);
   };
+}
+
+// Where the plane is that cuts the scene.
+function tellSection(section) {
+  $("cutters").hidden = !section.plane;
+  if (!section.plane) return;
+  const { place, turn, tilt } = section.told;
+  [["cutplace", place], ["cutturn", turn], ["cuttilt", tilt]].forEach(([id, value]) => { $(id).value = value; });
 }
 
 function fill() {
@@ -243,7 +255,7 @@ function show() {
   if (drawing && start - shownAt < IN_A_ROW_MS) drawing.world.paced(start - shownAt);
   shownAt = start;
   card.show(data, stage, player.time);
-  const now = [stage, player.time, player.playing, exaggerations[phase()], window.innerWidth, window.devicePixelRatio];
+  const now = [stage, player.time, player.playing, exaggerations[phase()], gaps.element, gaps.isWhole, window.innerWidth, window.devicePixelRatio];
   if (!told || now.some((value, i) => value !== told[i])) tell(); // turning the picture leaves the rest as it is: laying it out costs more than the picture
   told = now;
   player.drawn += 1;
@@ -279,6 +291,7 @@ function tell() {
     element("dt", "yaw, pitch, roll"), element("dd", `${mixed("angles", 1e-10)} deg`),
     element("dt", "phase"), element("dd", data.phases[shot.phase].name));
   $("forces").tBodies[0].replaceChildren(...forceRows(shot));
+  gaps.show(time);
   player.drawnTime = time;
   player.drawnExaggeration = k;
 }
@@ -341,6 +354,9 @@ $("names").addEventListener("change", () => { drawing.allNames = $("names").chec
 $("glass").addEventListener("change", () => { drawing.glaze($("glass").checked); refresh(); });
 $("perspective").addEventListener("change", () => { drawing.camera.perspective = $("perspective").checked; drawing.fit(); });
 $("points").addEventListener("change", () => { drawing.pointLook = $("points").value; refresh(); });
+$("cut").addEventListener("change", () => { drawing.cut($("cut").value || null); tellSection(drawing.section); refresh(); });
+$("cutplace").addEventListener("input", () => { drawing.section.move(Number($("cutplace").value)); refresh(); });
+for (const way of ["cutturn", "cuttilt"]) $(way).addEventListener("input", () => { drawing.section.face(Number($("cutturn").value), Number($("cuttilt").value)); refresh(); });
 document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => drawing?.camera.home(button.dataset.view)));
 document.addEventListener("keydown", (event) => {
   if (event.target.matches("input, button, select, summary")) return;
@@ -360,7 +376,9 @@ window.cagepose = {
       bodies: data.bodies.map((_, index) => stage.bodyPose(index, look).p), drive: stage.drive(player.time),
       camera: camera && { target: camera.target, half: camera.half, back: camera.axes()[2], perspective: camera.perspective },
       isBusy: asker.isBusy, answerMs: asker.tookMs, hand: hand?.led && { ...hand.led, force: hand.force, shownForce: hand.shownForce, at: hand.at },
-      picked: card.touch && data.names[card.touch.point], hasShadows: drawing?.world.hasShadows, built: drawing?.built };
+      picked: card.touch && data.names[card.touch.point], hasShadows: drawing?.world.hasShadows, built: drawing?.built,
+      gaps: gaps.at(player.time), dimensions: drawing ? gaps.dimensions(player.time, look, stage.pose(stage.truePose(player.time), look)) : [],
+      section: drawing?.section.plane && { ...drawing.section.plane, point: drawing.section.point, areas: drawing.caps.map((cap) => cap.area), handle: drawing.section.handle(camera) } };
   },
   fitted: () => drawing.content().map((place) => drawing.camera.project(place)), // apart: 12,000 places in a crowded scene
   isOnObject: (x, y) => Boolean(drawing.placeOnObject(x, y)),
@@ -370,7 +388,7 @@ window.cagepose = {
 
 fill();
 $("exaggeration").max = data.exaggerations.length - 1;
-for (const option of ["names", "start", "glass", "perspective", "points"]) $(option).disabled = !drawing;
+for (const option of ["names", "start", "glass", "perspective", "points", "cut", "dimensions"]) $(option).disabled = !drawing;
 if (drawing) $("names").checked = drawing.allNames;
 if (!data.points.length) $("points").parentElement.hidden = true;
 if (data.controls) panel = new Panel(data.controls, data.fileName, asker, replaceRun);

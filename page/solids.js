@@ -4,14 +4,14 @@
 import { BackSide, BufferAttribute, BufferGeometry, FrontSide, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
   Quaternion, Vector3, Vector4, Matrix3 } from "three";
 import { carried, composed, conjugate, dot, inverse, norm, rotated, sub } from "./geometry.js";
-import { faceMaterial } from "./materials.js";
+import { faceMaterial, hiddenMaterial } from "./materials.js";
 import { distinct, foldsOf, hit, placed, surfaceOf, wallOf, widestOf, within } from "./surfaces.js";
 
 const FINEST = 0.02; // times half the height of a picture: what looks straight
 const FINENESS = [12, 24, 48, 96], STRAIGHT = 0.25; // segments of a full circle; pixels that they may be off by
 const SLACK = 1e-4; // of a hole's depth, by which its mouth is cut beyond the face that it is in
 
-const geometryOf = (places, normals = null) => {
+export const geometryOf = (places, normals = null) => {
   const made = new BufferGeometry();
   made.setAttribute("position", new BufferAttribute(new Float32Array(places.flat()), 3));
   if (normals) made.setAttribute("normal", new BufferAttribute(new Float32Array(normals.flat()), 3));
@@ -47,6 +47,16 @@ export class Holes {
       this.uniforms.holeSizes.value[i].set(-depth * (hole.open ? 1 + SLACK : 1 - SLACK), SLACK * depth, chamfer, slope);
     });
   }
+
+  // In which hole a place is, seen from the target; -1: in none.
+  open(place) {
+    return this.holes.findIndex((_, i) => {
+      const seen = new Vector3(...place).applyMatrix3(this.uniforms.holeTurns.value[i]);
+      const axis = this.uniforms.holeAxes.value[i], size = this.uniforms.holeSizes.value[i];
+      const height = axis.w + seen.z, beyond = axis.x + axis.y * seen.x + axis.z * seen.y + seen.x ** 2 + seen.y ** 2;
+      return size.x <= height && height <= size.y && beyond < Math.max(0, height + size.z) * size.w;
+    });
+  }
 }
 
 // The shape of parts that move as one: bodies that are alike share it.
@@ -63,6 +73,7 @@ export class Shape {
     this.ends = [low[0], high[0]].flatMap((x) => [low[1], high[1]].flatMap((y) => [low[2], high[2]].map((z) => [x, y, z]))); // of the box around it
     this.widest = Math.max(...this.parts.map(({ form }) => widestOf(form)));
     this.meshes = new Map(); // by segments of a full circle
+    this.cuttable = new Map();
   }
 
   placed(surface) {
@@ -71,9 +82,22 @@ export class Shape {
 
   // Faces and edges, as fine as it needs where a pixel is so long: small balls of thousands of triangles are slow in software.
   mesh(pixel) {
-    const segments = FINENESS.find((segments) => this.widest * (1 - Math.cos(Math.PI / segments)) < STRAIGHT * pixel) ?? FINENESS.at(-1);
+    const segments = this.segments(pixel);
     if (!this.meshes.has(segments)) this.meshes.set(segments, this.meshOf(segments));
     return this.meshes.get(segments);
+  }
+
+  segments(pixel) {
+    return FINENESS.find((segments) => this.widest * (1 - Math.cos(Math.PI / segments)) < STRAIGHT * pixel) ?? FINENESS.at(-1);
+  }
+
+  // The surfaces of its parts, as fine as its mesh, for cuts.
+  pieces(pixel) {
+    const segments = this.segments(pixel);
+    if (!this.cuttable.has(segments)) {
+      this.cuttable.set(segments, this.parts.map(({ form, pose }) => ({ surface: placed(surfaceOf(form, null, 0, segments), pose, carried, rotated), isConvex: form.convex ?? true })));
+    }
+    return this.cuttable.get(segments);
   }
 
   meshOf(segments) {
@@ -89,25 +113,56 @@ export class Shape {
   }
 }
 
+// The surfaces of those parts of a body that are near the target, seen from there, as fine as a close look needs.
+export function surfacesNear({ shape, pose }, camera) {
+  return shape.parts.flatMap((part) => {
+    const at = composed(pose, part.pose);
+    const about = { p: sub(at.p, camera.target), q: at.q };
+    const target = carried(inverse(about), [0, 0, 0]);
+    if (norm(target) - part.reach > 2 * camera.reach()) return [];
+    const surface = part.form.vertices || part.form.size ? part.surface : surfaceOf(part.form, target, FINEST * camera.half);
+    return [{ surface: placed(surface, about, carried, rotated), isConvex: part.form.convex ?? true }];
+  });
+}
+
 // A body of a shape. `look` has the colours of faces and edges, and how much of the faces is seen through.
 export class Body {
   constructor(shape, holes, { face, edge }, isSoftware) {
     Object.assign(this, { shape, outer: shape.outer, ends: shape.ends, reach: shape.reach });
     this.group = new Group();
+    this.nearest = new Mesh(undefined, hiddenMaterial(holes)); // made first, it is drawn first
+    this.back = new Mesh(undefined, faceMaterial({ color: face, side: BackSide, polygonOffsetUnits: 8 }, holes, isSoftware)); // behind what lies against it
     this.front = new Mesh(undefined, faceMaterial({ color: face, side: FrontSide }, holes, isSoftware));
-    this.back = new Mesh(undefined, faceMaterial({ color: face, side: BackSide }, holes, isSoftware));
     this.lines = new LineSegments(undefined, new LineBasicMaterial({ color: edge }));
     this.front.castShadow = this.front.receiveShadow = true;
-    this.group.add(this.front, this.back, this.lines);
+    this.group.add(this.nearest, this.back, this.front, this.lines);
     for (const thing of [this.group, ...this.group.children]) thing.matrixAutoUpdate = thing.frustumCulled = false;
     this.seeThrough(1);
   }
 
+  // Lets what is behind it be seen. Only what of it is nearest to the eye has a tint: parts that touch, or lie in each other,
+  // do not show through each other, in whatever order they come.
   seeThrough(opacity) {
-    Object.assign(this.front.material, { opacity, transparent: opacity < 1, depthWrite: opacity === 1 });
-    this.front.renderOrder = opacity < 1 ? 2 : 0;
-    this.isGlass = this.back.visible = opacity < 1; // of a closed surface that hides its inside nothing is seen from there
-    this.front.material.needsUpdate = true;
+    this.look(opacity, opacity < 1, false, 2);
+  }
+
+  // Lets what is in it be seen, before its far sides.
+  seeInto(opacity) {
+    this.look(opacity, false, opacity < 1, 2.1);
+  }
+
+  look(opacity, isTinted, isOpen, order) {
+    const { front, nearest, back } = this, isGlass = this.isGlass = opacity < 1;
+    Object.assign(front.material, { opacity, transparent: isGlass, depthWrite: !isOpen });
+    front.renderOrder = nearest.renderOrder = isGlass ? order : 0;
+    nearest.visible = isTinted;
+    back.visible = isOpen;
+    front.material.needsUpdate = true;
+  }
+
+  // Leaves what is behind planes; null: all of it.
+  clip(planes) {
+    for (const { material } of [this.front, this.nearest, this.back, this.lines]) material.clippingPlanes = planes;
   }
 
   show(pose, camera) {
@@ -117,7 +172,7 @@ export class Body {
     this.closeGeometries?.forEach((geometry) => geometry.dispose());
     this.closeGeometries = this.close && [geometryOf(this.close.corners, this.close.normals), geometryOf(this.close.lines)];
     const [faces, lines] = this.closeGeometries ?? this.shape.mesh(camera.pixel(pose.p));
-    this.front.geometry = this.back.geometry = faces;
+    this.front.geometry = this.nearest.geometry = this.back.geometry = faces;
     this.lines.geometry = lines;
     const [p, q] = this.close ? [[0, 0, 0], [1, 0, 0, 0]] : [sub(pose.p, camera.target), pose.q];
     this.group.matrix.compose(new Vector3(...p), new Quaternion(q[1], q[2], q[3], q[0]), new Vector3(1, 1, 1));
@@ -126,13 +181,8 @@ export class Body {
 
   near(pose, camera) {
     const found = { corners: [], normals: [], lines: [] };
-    for (const part of this.shape.parts) {
-      const at = composed(pose, part.pose);
-      const about = { p: sub(at.p, camera.target), q: at.q };
-      const target = carried(inverse(about), [0, 0, 0]);
-      if (norm(target) - part.reach > 2 * camera.reach()) continue;
-      const surface = part.form.vertices || part.form.size ? part.surface : surfaceOf(part.form, target, FINEST * camera.half);
-      const cut = within(placed(surface, about, carried, rotated), camera.reach());
+    for (const { surface } of surfacesNear(this, camera)) {
+      const cut = within(surface, camera.reach());
       for (const key of Object.keys(found)) found[key].push(...cut[key]);
     }
     return found;
@@ -168,8 +218,13 @@ export class Walls {
     });
   }
 
+  clip(planes) {
+    for (const { wall, lines } of this.made) wall.material.clippingPlanes = lines.material.clippingPlanes = planes;
+  }
+
   show(poses, widers, camera) {
-    this.made.forEach(({ wall, lines }, i) => {
+    this.made.forEach((made, i) => {
+      const { wall, lines } = made;
       const about = { p: sub(poses[i].p, camera.target), q: poses[i].q };
       const form = this.forms[this.holes[i].form];
       const near = camera.isClose() ? carried(inverse(about), [0, 0, 0]) : null;
@@ -177,6 +232,7 @@ export class Walls {
       const surface = near ? within(whole, camera.reach()) : whole;
       wall.geometry.dispose();
       lines.geometry.dispose();
+      made.surface = surface;
       wall.geometry = geometryOf(surface.corners, surface.normals);
       lines.geometry = geometryOf(surface.lines);
     });

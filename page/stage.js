@@ -6,8 +6,8 @@ export class Stage {
   constructor(data) {
     this.data = data;
     const cages = data.cages.map((cage) => cage.map(({ position, quaternion }) => ({ p: position, q: quaternion })));
-    const touches = data.touches.map(({ points, boxes, normals, forces, places, gaps, friction }) =>
-      points.map((point, i) => ({ point, box: boxes[i], normal: normals[i], force: forces && forces[i], gap: gaps && gaps[i],
+    const touches = data.touches.map(({ points, boxes, normals, forces, places, friction }) =>
+      points.map((point, i) => ({ point, box: boxes[i], normal: normals[i], force: forces && forces[i],
         friction: friction && friction[i], place: places ? places[i] : data.points[point] })));
     const moves = cages.length > 1;
     this.shots = data.shots.map((s) => ({ row: s.row, phase: s.phase, pose: { p: s.position, q: s.quaternion }, cage: cages[s.cage],

@@ -10,3 +10,11 @@ export function element(tag, text, className) {
   if (className) made.className = className;
   return made;
 }
+
+// A length to four digits, in the scene's unit; what is small, in micrometres or nanometres.
+export function gapWords(length, unit) {
+  const metres = { mm: 1e-3, m: 1 }[unit];
+  const units = [["mm", 1e-3, 1e-4], ["\u00b5m", 1e-6, 1e-7], ["nm", 1e-9, 0]];
+  const [name, size] = metres && length * metres < 1 ? units.find(([, , least]) => length * metres >= least) : [unit, metres];
+  return `${+(metres ? length * metres / size : length).toPrecision(4)} ${name}`;
+}

@@ -24,6 +24,7 @@ export class World {
     const isSoftware = this.isSoftware = SOFTWARE.test(graphicsCard());
     this.renderer = new WebGLRenderer({ canvas, antialias: !isSoftware, preserveDrawingBuffer: true });
     this.renderer.setClearColor(color(paper));
+    this.renderer.localClippingEnabled = true;
     this.scene = new Scene();
     this.scene.fog = new Fog(color(paper));
     this.sun = new DirectionalLight(0xffffff, sun);

@@ -44,7 +44,13 @@ class PlacesOfContact(NamedTuple):
 
 
 class TouchFinder:
-    """Finds contacts of one scene, at pose after pose, in the same memory."""
+    """Finds contacts of one scene, at pose after pose, in the same memory.
+
+    Attributes
+    ----------
+    geometry, placement
+        What kernels take: the two boundaries, and memory for the object at one pose.
+    """
 
     def __init__(self, scene: Scene) -> None:
         geometry = scene.geometry._replace(placed=placed_bodies(scene.cage, scene.geometry.cage))
@@ -52,16 +58,16 @@ class TouchFinder:
         self._parts, self._cage_parts = np.array(held["part"]), np.array(cage["part"])
         self._scene, self._placed = scene, geometry
         self._displaced = (Pose(),) * (1 + len(scene.cage.bodies))
-        self._geometry = Slots(geometry)
+        self.geometry = Slots(geometry)
         self._placement: Placement = empty_placement(geometry)
-        self._written = Slots(self._placement)
+        self.placement = Slots(self._placement)
 
     def at(self, pose_world_object: Pose, cage: CageAt) -> PlacesOfContact:
         """Return what touches, within the scene's touch tolerance, with the object at a pose and the bodies of the cage
         where they are.
         """
         self._place_bodies(cage)
-        place_object(self._geometry, *pose_world_object.as_tuples(), self._written)
+        place_object(self.geometry, *pose_world_object.as_tuples(), self.placement)
         placement = self._placement
         every: Any = placement.memory.rows
         of_bodies = zip(placement.first_rows.tolist(), placement.counts[:, 0].tolist(), strict=False)

@@ -28,6 +28,8 @@ PAINT = {
     "load": "#161616",
     "hand": "#007a56",
     "axis": "#cc79a7",
+    "section": "#009e73",
+    "gap": "#7b2d8e",
     "trace": "#0072b2",
     "grid": "#d3d8de",
 }

@@ -27,6 +27,7 @@ from cagepose.studies.ending import run_kind, turned_far, verdict_kind
 from cagepose.views.drive_words import STOPS, along_drawn, drive_data, how_far, share_words
 from cagepose.views.solids import Solid, solid_of
 from cagepose.views.viewer import look
+from cagepose.views.viewer.gaps import gap_data
 from cagepose.views.viewer.playback import Playback, Row, Shot, Touches
 from cagepose.views.viewer.stage import EASED_SHARE, EXAGGERATIONS, MOST_ADDED, MOST_WAY, Stage
 
@@ -81,6 +82,7 @@ class _Writer:
             "center": _numbers(held.center_of_gravity_m / stage.size_m),
             "reach": stage.reach_m / stage.size_m,
             "names": list(run.scene.cage.element_names),
+            "partNames": list(held.element_names),
             "points": [_numbers(point) for point in stage.place(self.shown.points_world)],
             "elementBodies": list(run.scene.cage.element_bodies),
             "cages": [self._cage(cage) for cage in self.cages],
@@ -88,6 +90,7 @@ class _Writer:
                 phase.reference: [_numbers(gap / stage.size_m) for gap in stage.gaps_world(phase.reference)]
                 for phase in stage.phases
             },
+            "clearances": gap_data(self.shown, stage),
             **self._solids(),
             "greatestForce": self._greatest_force(),
             "forceUnit": self._force_unit(),
@@ -158,7 +161,8 @@ class _Writer:
             return {"radius": shape.radius_m / size_m, "length": length / size_m}
         if isinstance(shape, Box):
             return {"size": _numbers(shape.size_m / size_m)}
-        return {"vertices": _rounded(solid.mesh.vertices_m / size_m), "triangles": solid.mesh.triangles.tolist()}
+        mesh = {"vertices": _rounded(solid.mesh.vertices_m / size_m), "triangles": solid.mesh.triangles.tolist()}
+        return {**mesh, "convex": shape.is_convex}
 
     def _cage(self, cage: CageAt) -> list[dict[str, Any]]:
         """How what stands still, then each body, is displaced from its start."""
@@ -194,7 +198,6 @@ class _Writer:
             "normals": _rounded(touches.normals_object),
             "forces": None if forces is None else (forces + 0.0).tolist(),
             "places": self._places(touches),
-            "gaps": None if touches.gaps_m is None else _numbers(from_metres(touches.gaps_m, self.shown.length_unit)),
             "friction": None if forces is None else [self._friction(*pair) for pair in self._pairs(touches)],
         }
 

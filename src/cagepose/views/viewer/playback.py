@@ -52,8 +52,6 @@ class Touches:
         Forces on the object, (n, 3), newtons or parts of the load; None: not known, as during a motion.
     places_world
         Where they touch, (n, 3), metres.
-    gaps_m
-        How far apart they are there, (n,), metres, within the touch tolerance; None: not known, as during a motion.
     """
 
     points: NDArray[np.int64]
@@ -61,7 +59,6 @@ class Touches:
     normals_object: FloatArray
     forces_object: FloatArray | None
     places_world: FloatArray
-    gaps_m: FloatArray | None = None
 
     def chosen(self, which: Sequence[bool]) -> Touches:
         """Return those of which ``which`` says so, without forces."""
@@ -320,7 +317,6 @@ class _Camera:
                     for element, contact in zip(elements.tolist(), contacts, strict=True)
                 ]
             ),
-            np.array([contact.gap_m for contact in contacts]),
         )
 
 

@@ -356,12 +356,14 @@ def _everywhere(cages: Sequence[CageAt], which: int) -> FloatArray:
 
 
 def _play(hole: Hole, pose_world_hole: Pose, others_world: FloatArray) -> float:
-    """Return how much wider a hole is than what stands in it of vertices of the other body, (n, 3)."""
-    in_hole = pose_world_hole.inverse_transform(others_world)
-    aside = np.hypot(in_hole[:, 0], in_hole[:, 1])
+    """Return how much wider a hole is than what stands in it, wherever in it, of vertices of the other body, (n, 3)."""
+    across = pose_world_hole.inverse_transform(others_world)[:, :2]
     # What stands in a hole may come out of it at both ends, where a mesh has its vertices.
-    beside = aside[aside < 1.2 * hole.radius_m]
-    return max(0.0, hole.radius_m - float(beside.max())) if len(beside) else 0.0
+    beside = across[np.hypot(*across.T) < 1.2 * hole.radius_m]
+    if not len(beside):
+        return 0.0
+    middle = (beside.min(axis=0) + beside.max(axis=0)) / 2.0
+    return max(0.0, hole.radius_m - float(np.hypot(*(beside - middle).T).max()))
 
 
 def _turn_vector(start: Pose, end: Pose) -> FloatArray:
