@@ -10,6 +10,7 @@ STUDY_MODULES = {
     "SALib": "SALib",
     "jinja2": "Jinja2",
     "matplotlib": "matplotlib",
+    "PIL": "Pillow",
 }
 
 
