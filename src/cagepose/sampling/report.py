@@ -16,7 +16,7 @@ from cagepose.sampling.chosen_runs import NOMINAL, REPORT, played_runs, write_sc
 from cagepose.sampling.figures import draw
 from cagepose.sampling.findings import Findings, document
 from cagepose.sampling.results import StudyResults
-from cagepose.views.style import figure_bytes
+from cagepose.views.style import figure_bytes, inner_svg
 from cagepose.views.templates import environment
 from cagepose.views.viewer.film import png_bytes
 from cagepose.views.viewer.packed import packed_pages
@@ -75,7 +75,7 @@ def page_text(
     """Return the page; ``mechanism``: the picture that it begins with, PNG."""
     templates = environment("cagepose.sampling")
     templates.filters |= {"number": number_or_dash, "percent": percent, "range": range_or_dash}
-    svgs = {name: Markup(_inner_svg(content)) for name, content in pictures.items()}
+    svgs = {name: Markup(inner_svg(content)) for name, content in pictures.items()}
     return templates.get_template("report.jinja").render(
         made_by=MADE_BY,
         found=numbers,
@@ -85,9 +85,3 @@ def page_text(
         nominal=played[NOMINAL].run.verdict,
         packed=Markup(packed_pages(played)),
     )
-
-
-def _inner_svg(content: bytes) -> str:
-    """An SVG file without what stands before its first tag, to stand within a page."""
-    text = content.decode()
-    return text[text.index("<svg") :]

@@ -73,6 +73,19 @@ def require_import_page() -> None:
     require("jinja2", "the page needs Jinja2", "plot")
 
 
+def require_insertion_page() -> None:
+    """Do nothing if all is installed that a page about an insertion needs.
+
+    Raises
+    ------
+    MissingExtraError
+        As `require_pillow`.
+    """
+    require_matplotlib()
+    require("jinja2", "the page needs Jinja2", "plot")
+    require_pillow()
+
+
 def require_study() -> None:
     """Do nothing if all is installed that studies of many runs need.
 

@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Frame, Page
 
-from cagepose import Study
+from cagepose import Study, save_scene
+from cagepose.cli.app import main
 from cagepose.sampling import capture_map, report, sensitivity
+from driven.pins_into_plates import pins_into_a_plate
 from driving import wait_until
 from our_studies import RAIL
 
@@ -20,10 +22,10 @@ def opened_run(tab: Page) -> Frame:
     return tab.frames[1]
 
 
-def is_picture(tab: Page) -> bool:
-    """Whether the first picture is there and before all else but the title and a paragraph."""
-    first = tab.locator("h1 ~ *").nth(1)
-    return first.locator("img").evaluate("(image) => image.complete && image.naturalWidth === 900")
+def begins_with_a_picture(tab: Page) -> bool:
+    """Whether a picture is above the first headline."""
+    is_drawn = tab.locator("h1 ~ figure img").evaluate("(image) => image.complete && image.naturalWidth === 900")
+    return is_drawn and tab.locator("h2 ~ figure img").count() == 0
 
 
 def test_the_report_of_a_study_plays_its_worst_runs(watched, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -37,7 +39,7 @@ def test_the_report_of_a_study_plays_its_worst_runs(watched, tmp_path: Path, mon
     assert file.stat().st_size < 600_000
     tab.context.set_offline(True)
     tab.goto(file.as_uri())
-    assert is_picture(tab)
+    assert begins_with_a_picture(tab)
     assert len(tab.frames) == 1
 
     tab.get_by_role("link", name="worst 1").click()
@@ -53,4 +55,22 @@ def test_the_report_of_a_study_plays_its_worst_runs(watched, tmp_path: Path, mon
     opened_run(tab)
     tab.get_by_role("button", name="back to the report").click()
     wait_until(tab, "!played.open && frames.length === 0 && location.hash === ''")
+    assert set(watched.requests) == {file.as_uri()}
+
+
+def test_the_page_of_an_insertion_plays_runs_from_just_beyond_what_is_permitted(watched, tmp_path: Path) -> None:
+    save_scene(pins_into_a_plate((-40.0, 40.0)), tmp_path / "plate.yaml")
+    file, tab = tmp_path / "report.html", watched.page
+    assert main(["insertion", str(tmp_path / "plate.yaml"), "--along", "z,yaw", "--report", str(file)]) == 0
+    assert file.stat().st_size < 600_000
+    tab.context.set_offline(True)
+    tab.goto(file.as_uri())
+    assert begins_with_a_picture(tab)
+    assert tab.locator("tr", has_text="yaw").locator("td").all_inner_texts() == [
+        *("yaw", "deg", "-1.211", "1.211", "blocked play", "blocked play")
+    ]
+    tab.locator("tr", has_text="yaw").get_by_role("link").last.click()
+    inside = opened_run(tab)
+    assert inside.locator("#verdict").inner_text() == "blocked"
+    assert tab.locator("#played b").inner_text() == "yaw above"
     assert set(watched.requests) == {file.as_uri()}
