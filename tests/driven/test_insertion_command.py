@@ -118,6 +118,7 @@ def test_a_run_that_failed_by_name_ends_with_one(plate: str, monkeypatch: pytest
             ["--picture", "plate.doc"],
             "--picture plate.doc: .doc is no known kind of file; use one of: .png, .svg, .pdf",
         ),
+        (["--report", "plate.pdf"], "--report plate.pdf: .pdf is no known kind of file; use one of: .html"),
         (["--set", "loads[0].drive.head.travl=1"], "is no known key"),
     ],
 )

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import cagepose
-from cagepose import Cage, CageBody, Drive, Load, Misalignment, Object, Pose, Scene, insertion, run
+from cagepose import Cage, Drive, Load, Misalignment, Object, Pose, Scene, Spring, insertion, run
 from cagepose.runs.drives import displaced_by
 from cagepose.runs.misaligned import Misaligned, Reached
+from cagepose.runs.misaligned_scene import misaligned_scene
 from cagepose.studies import misalignment as module
 from cagepose.studies.misalignment import permitted_misalignment
 from driven.driven_scenes import jaws, lever
@@ -145,33 +146,6 @@ def test_where_the_scene_itself_does_not_get_to_its_end_nothing_is_permitted() -
     assert (found.low.permitted, found.low.fails_at, found.low.verdict) == (None, 0.0, "blocked")
 
 
-def moved_by_hand(scene: Scene, moved: Pose, *, takes_object: bool) -> Scene:
-    """The scene anew, all bodies and their ways moved; springs are as they were, as they go along with both ends."""
-    held, cage = scene.object, scene.cage
-    bodies = [
-        CageBody(body.name, shapes=body.shapes, holes=body.holes, pose=moved @ body.pose_cage_body)
-        for body in cage.bodies
-    ]
-    start = moved @ held.pose_world_object if takes_object else held.pose_world_object
-    loads = [
-        Load(
-            load.name,
-            gravity=load.gravity_world,
-            springs=load.springs,
-            drive={name: [leg.moved(moved) for leg in legs] for name, legs in load.drive.items()},
-        )
-        for load in scene.loads
-    ]
-    part = Object(held.boxes, shapes=held.shapes, holes=held.holes, mass_kg=held.mass_kg, pose=start)
-    standing = cage.standing
-    return Scene(
-        part,
-        Cage(shapes=standing.shapes, holes=standing.holes, bodies=bodies),
-        loads,
-        friction_coefficient=scene.friction_coefficient,
-    )
-
-
 @pytest.mark.parametrize(
     ("scene", "takes_object", "turned"),
     [
@@ -190,7 +164,7 @@ def test_a_drive_out_of_place_is_that_of_a_scene_drawn_so(
     misaligned = Misaligned(scene, 0)
     assert misaligned.takes_object == takes_object
     (reached,) = misaligned.run([moved])
-    by_hand = moved_by_hand(scene, moved, takes_object=takes_object)
+    by_hand = misaligned_scene(scene, 0, moved)
     (phase,) = run(by_hand).phases
     assert reached.is_end
     assert phase.verdict in ("rests", "may rest")
@@ -200,6 +174,20 @@ def test_a_drive_out_of_place_is_that_of_a_scene_drawn_so(
     went = phase.pose.transform(center) - by_hand.object.pose_world_object.transform(center)
     along = float(went @ way) / whole
     assert reached.advance_m == pytest.approx(along if takes_object else whole - along, abs=1e-9)
+
+
+def test_a_spring_to_what_is_out_of_place_keeps_its_length_without_a_load() -> None:
+    scene = pins_into_a_plate()
+    spring, (load,) = Spring((0.04, 0.0, 0.01), (0.09, 0.03, 0.0), 400.0, 0.3, of="head"), scene.loads
+    pulled = Load(load.name, gravity=load.gravity_world, springs=[spring], drive=load.drive)
+    scene = Scene(scene.object, scene.cage, [pulled], friction_coefficient=0.0)
+
+    def slack_m(one: Scene) -> float:
+        (spring,) = one.loads[0].springs
+        ends = one.cage.spring_end_world(spring), one.object.pose_world_object.transform(spring.at_object_m)
+        return float(np.linalg.norm(ends[0] - ends[1])) - spring.preload_n / spring.stiffness_n_per_m
+
+    assert slack_m(misaligned_scene(scene, 0, Pose((0.0003, 0.0, 0.0)))) == pytest.approx(slack_m(scene), abs=1e-15)
 
 
 @pytest.fixture

@@ -41,6 +41,7 @@ def small_designs(monkeypatch: pytest.MonkeyPatch) -> None:
 def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """The pictures of a report are left blank, where a test asks for its numbers: they take a second each time."""
     monkeypatch.setattr(report, "figure_bytes", lambda *_: b"<svg></svg>")
+    monkeypatch.setattr(report, "png_bytes", lambda _: b"")
 
 
 @pytest.fixture

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import sys
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from cagepose.cli.options import FILE, FileName, SceneArgument, SetOption, Switch, refusal
+
+if TYPE_CHECKING:
+    from cagepose.files.units import LengthUnit
+    from cagepose.studies.insertion_result import Insertion
 
 ERASE_LINE = "\r\x1b[K"
 
@@ -33,12 +37,21 @@ def insertion_command(
     picture: Annotated[
         FileName | None, FILE, Parameter(help="Picture file to write as well: .png, .svg or .pdf.", show_default=False)
     ] = None,
+    report: Annotated[
+        FileName | None,
+        FILE,
+        Parameter(
+            help="Page to write as well, such as report.html: all of this with a picture of the mechanism, and the runs"
+            " from just beyond what is permitted, to be played.",
+            show_default=False,
+        ),
+    ] = None,
 ) -> int:
     """Print how far a drive gets, its force, where it could jam, and how far it may be out of place."""
     from cagepose.errors import SceneError, SceneFileError
     from cagepose.files.scene_file import read_scene_file
 
-    problems = _picture_problems(picture)
+    problems = _output_problems(picture, report)
     try:
         scene_file = read_scene_file(scene, set_values)
     except SceneFileError as error:
@@ -59,17 +72,15 @@ def insertion_command(
     if sys.stderr.isatty():
         sys.stderr.write(ERASE_LINE)
     code = 1 if found.run.failed else 0
-    if picture is not None:
+    for option, name, content in (("picture", picture, _picture), ("report", report, _report)):
+        if name is None:
+            continue
         from cagepose.files.write import write_whole
-        from cagepose.views.insertion_figure import insertion_figure
-        from cagepose.views.output_files import FIGURES, output_suffix
-        from cagepose.views.style import figure_bytes
 
-        figure = insertion_figure(found, scene_file.length_unit)
         try:
-            write_whole(picture, figure_bytes(figure, output_suffix(picture, FIGURES)))
+            write_whole(name, content(found, scene_file.length_unit, name))
         except OSError as error:
-            sys.stderr.write(refusal(f"--picture {picture}", error) + "\n")
+            sys.stderr.write(refusal(f"--{option} {name}", error) + "\n")
             code = 2
     if json:
         from cagepose.files.insertion_document import insertion_document
@@ -83,19 +94,44 @@ def insertion_command(
     return code
 
 
-def _picture_problems(picture: str | None) -> list[str]:
-    """Return why the picture cannot be written, before anything runs."""
-    if picture is None:
-        return []
-    from cagepose.views.extra import require_matplotlib
+def _picture(found: Insertion, unit: LengthUnit, name: str) -> bytes:
+    from cagepose.views.insertion_figure import insertion_figure
+    from cagepose.views.output_files import FIGURES, output_suffix
+    from cagepose.views.style import figure_bytes
+
+    return figure_bytes(insertion_figure(found, unit), output_suffix(name, FIGURES))
+
+
+def _report(found: Insertion, unit: LengthUnit, _name: str) -> bytes:
+    from cagepose.cli.insertion_report import insertion_lines, meaning, permitted
+    from cagepose.files.words import LengthWords
+    from cagepose.views.insertion_page import insertion_page
+
+    lines = insertion_lines(found, LengthWords(unit, found.run.scene.size_m))
+    table = permitted(found, unit)
+    headings = [str(column.header) for column in table.columns]
+    rows = [[str(cell) for cell in row] for row in zip(*(column.cells for column in table.columns), strict=True)]
+    return insertion_page(found, unit, lines, meaning(found), headings, rows).encode()
+
+
+def _output_problems(picture: str | None, report: str | None) -> list[str]:
+    """Return why a picture or a page cannot be written, before anything runs."""
+    from cagepose.views.extra import require_insertion_page, require_matplotlib
     from cagepose.views.output_files import FIGURES, check_output
 
-    require_matplotlib()
-    try:
-        check_output(picture, FIGURES)
-    except (OSError, ValueError) as error:
-        return [refusal(f"--picture {picture}", error)]
-    return []
+    problems = []
+    for option, name, suffixes, require in (
+        ("picture", picture, FIGURES, require_matplotlib),
+        ("report", report, (".html",), require_insertion_page),
+    ):
+        if name is None:
+            continue
+        require()
+        try:
+            check_output(name, suffixes)
+        except (OSError, ValueError) as error:
+            problems.append(refusal(f"--{option} {name}", error))
+    return problems
 
 
 def _show_search(share: float) -> None:

@@ -29,16 +29,16 @@ def print_insertion(insertion: Insertion, unit: LengthUnit) -> None:
     title = Text(f"{run.scene.name}, {run.scene.loads[insertion.phase].name}: ")
     title.append(insertion.verdict, style=verdict_style(insertion.verdict))
     table = Table.grid(padding=(0, 2))
-    for name, value in _lines(insertion, words):
+    for name, value in insertion_lines(insertion, words):
         table.add_row(Text(name), Text(value, overflow="fold"))
     print_all(title, "", table)
     if insertion.misalignment:
-        print_all("", Text(_meaning(insertion)), "", _permitted(insertion, unit))
+        print_all("", Text(meaning(insertion)), "", permitted(insertion, unit))
     for warning in run.warnings:
         print_all(Text(f"warning: {warning}", style="yellow"))
 
 
-def _lines(insertion: Insertion, words: LengthWords) -> list[tuple[str, str]]:
+def insertion_lines(insertion: Insertion, words: LengthWords) -> list[tuple[str, str]]:
     """Return what came of the drive, and what that says about jamming."""
     run, number = insertion.run, insertion.phase
     if insertion.ended is None:
@@ -56,12 +56,14 @@ def _lines(insertion: Insertion, words: LengthWords) -> list[tuple[str, str]]:
     return lines
 
 
-def _meaning(insertion: Insertion) -> str:
+def meaning(insertion: Insertion) -> str:
+    """Return what the table of how far all may be out of place says."""
     what = names_of(insertion.bodies) + (" with the object" if insertion.takes_object else "")
     return f"How far {what} may be out of place, one freedom at a time, and what happens just beyond:"
 
 
-def _permitted(insertion: Insertion, unit: LengthUnit) -> Table:
+def permitted(insertion: Insertion, unit: LengthUnit) -> Table:
+    """Return that table, a row for each freedom."""
     table = plain_table("", "unit", "from", "to", "just below", "just above")
     for name, found in insertion.misalignment.items():
         is_length = name in LENGTHS

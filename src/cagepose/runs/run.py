@@ -296,7 +296,7 @@ class Run:
         return text
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: a picture, and the same text."""
+        """What a notebook shows: the page that plays it, and the same text."""
         html: str = from_above("run as html")(self)
         return html
 

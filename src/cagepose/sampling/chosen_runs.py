@@ -1,4 +1,4 @@
-"""The worst and the most typical runs of a study, and these as scenes."""
+"""The worst and the most typical runs of a study, and these as scenes and as runs to be played."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path as PathOnDisk
 
 import numpy as np
 
+from cagepose.files.key_path import Path
 from cagepose.files.scene_edit import with_values
 from cagepose.files.study_file import SCENE_NAME
 from cagepose.files.write import write_whole
@@ -16,9 +17,10 @@ from cagepose.runs.solve import run
 from cagepose.sampling.outcome import REFUSED, at_rest
 from cagepose.sampling.results import StudyResults
 from cagepose.sampling.statistics import Statistics
-from cagepose.views.viewer.page import page
-from cagepose.views.viewer.playback import playback
+from cagepose.views.viewer.playback import Playback, playback
 
+REPORT, NOMINAL = "report.html", "nominal"
+"""The page of a study, and the run that it shows first."""
 N_WORST = 3
 
 
@@ -29,8 +31,8 @@ class ChosenRun:
     Attributes
     ----------
     name, file, page
-        What it is, "worst 1" or "typical", and the names of its scene and of the page that plays it in the study's
-        folder.
+        What it is, "worst 1" or "typical", the name of its scene in the study's folder, and where it is played: in the
+        report.
     run, verdict, accepted
         Its number, and how it ended.
     distance
@@ -83,28 +85,34 @@ def chosen_runs(results: StudyResults, statistics: Statistics) -> list[ChosenRun
     named += [("typical", found) for _, found in typical]
     stems = [name.replace(" ", "-") for name, _ in named]
     return [
-        replace(found, name=name, file=f"{stem}.yaml", page=f"{stem}.html")
+        replace(found, name=name, file=f"{stem}.yaml", page=f"{REPORT}#{stem}")
         for stem, (name, found) in zip(stems, named, strict=True)
     ]
 
 
-def write_runs(results: StudyResults, chosen: Sequence[ChosenRun]) -> list[PathOnDisk]:
-    """Write chosen runs beside the study's own scene, as its file with other numbers and as a page that plays; return
-    the files.
+def write_scenes(results: StudyResults, chosen: Sequence[ChosenRun]) -> list[PathOnDisk]:
+    """Write the scenes of chosen runs beside the study's own, as its file with other numbers; return the files.
 
     Raises
     ------
     OSError
         One cannot be written.
     """
-    folder, paths = results.folder.path, [one.path for one in results.study.varied]
+    folder = results.folder.path
     text = (folder / SCENE_NAME).read_text(encoding="utf-8")
-    written = []
     for one in chosen:
-        values = dict(zip(paths, one.values.tolist(), strict=True))
-        source = results.study.scene_text.scene_with(values)
-        shown = page(playback(run(source.scene), source.length_unit))
-        for name, content in ((one.file, with_values(text, {**values})), (one.page, shown)):
-            write_whole(folder / name, content.encode())
-            written.append(folder / name)
-    return written
+        write_whole(folder / one.file, with_values(text, {**_values(results, one)}).encode())
+    return [folder / one.file for one in chosen]
+
+
+def played_runs(results: StudyResults, chosen: Sequence[ChosenRun]) -> dict[str, Playback]:
+    """Return the nominal run and chosen ones, by what stands behind the report's name in their addresses."""
+    scenes = {NOMINAL: results.study.nominal}
+    for one in chosen:
+        scenes[one.page.removeprefix(f"{REPORT}#")] = results.study.scene_text.scene_with(_values(results, one))
+    return {name: playback(run(source.scene), source.length_unit) for name, source in scenes.items()}
+
+
+def _values(results: StudyResults, one: ChosenRun) -> dict[Path, float]:
+    paths = [varied.path for varied in results.study.varied]
+    return dict(zip(paths, one.values.tolist(), strict=True))

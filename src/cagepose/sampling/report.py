@@ -1,8 +1,9 @@
-"""The report of a study: a page that stands alone, its numbers as JSON, its pictures, and chosen runs."""
+"""The report of a study: a page that stands alone and plays chosen runs, its numbers as JSON, pictures, and scenes."""
 
 from __future__ import annotations
 
 import json
+from base64 import b64encode
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +12,17 @@ from markupsafe import Markup
 from cagepose import __version__
 from cagepose.files.write import MADE_BY, json_text, write_whole
 from cagepose.model.wording import number_or_dash, percent, range_or_dash
-from cagepose.sampling.chosen_runs import write_runs
+from cagepose.sampling.chosen_runs import NOMINAL, REPORT, played_runs, write_scenes
 from cagepose.sampling.figures import draw
 from cagepose.sampling.findings import Findings, document
 from cagepose.sampling.results import StudyResults
-from cagepose.views.style import figure_bytes
+from cagepose.views.style import figure_bytes, inner_svg
 from cagepose.views.templates import environment
+from cagepose.views.viewer.film import png_bytes
+from cagepose.views.viewer.packed import packed_pages
+from cagepose.views.viewer.playback import Playback
 
-PAGE_NAME, NUMBERS_NAME = "report.html", "report.json"
+NUMBERS_NAME, MECHANISM_NAME = "report.json", "mechanism.png"
 PICTURES = (".svg", ".png")
 
 
@@ -31,15 +35,17 @@ def write_report(findings: Findings) -> list[Path]:
         A file cannot be written.
     """
     folder, numbers = findings.results.folder.path, document(findings)
-    figures = draw(findings)
+    figures, played = draw(findings), played_runs(findings.results, findings.chosen)
     contents = {
         f"{name}{suffix}": figure_bytes(figure, suffix) for name, figure in figures.items() for suffix in PICTURES
     }
+    contents[MECHANISM_NAME] = png_bytes(played[NOMINAL])
     contents[NUMBERS_NAME] = numbers_text(numbers).encode()
-    contents[PAGE_NAME] = page_text(numbers, findings, {name: contents[f"{name}.svg"] for name in figures}).encode()
+    svgs = {name: contents[f"{name}.svg"] for name in figures}
+    contents[REPORT] = page_text(numbers, findings, svgs, contents[MECHANISM_NAME], played).encode()
     for name, content in contents.items():
         write_whole(folder / name, content)
-    return [*(folder / name for name in reversed(contents)), *write_runs(findings.results, findings.chosen)]
+    return [*(folder / name for name in reversed(contents)), *write_scenes(findings.results, findings.chosen)]
 
 
 def numbers_text(numbers: dict[str, Any]) -> str:
@@ -59,17 +65,23 @@ def kept_numbers(results: StudyResults) -> dict[str, Any] | None:
         return None
 
 
-def page_text(numbers: dict[str, Any], findings: Findings, pictures: dict[str, bytes]) -> str:
-    """Return the page."""
+def page_text(
+    numbers: dict[str, Any],
+    findings: Findings,
+    pictures: dict[str, bytes],
+    mechanism: bytes,
+    played: dict[str, Playback],
+) -> str:
+    """Return the page; ``mechanism``: the picture that it begins with, PNG."""
     templates = environment("cagepose.sampling")
     templates.filters |= {"number": number_or_dash, "percent": percent, "range": range_or_dash}
-    svgs = {name: Markup(_inner_svg(content)) for name, content in pictures.items()}
+    svgs = {name: Markup(inner_svg(content)) for name, content in pictures.items()}
     return templates.get_template("report.jinja").render(
-        made_by=MADE_BY, found=numbers, pictures=svgs, planned=findings.n_planned
+        made_by=MADE_BY,
+        found=numbers,
+        pictures=svgs,
+        planned=findings.n_planned,
+        mechanism=b64encode(mechanism).decode(),
+        nominal=played[NOMINAL].run.verdict,
+        packed=Markup(packed_pages(played)),
     )
-
-
-def _inner_svg(content: bytes) -> str:
-    """An SVG file without what stands before its first tag, to stand within a page."""
-    text = content.decode()
-    return text[text.index("<svg") :]

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cagepose.model.checks import FloatArray
+from cagepose.model.checks import FloatArray, expect_choice
+from cagepose.model.scene import Scene
 from cagepose.runs.driven import DriveRun
 from cagepose.runs.drives import way_of
+from cagepose.runs.misaligned_scene import misaligned_scene
 from cagepose.runs.run import PhaseRun, Run, Verdict
-from cagepose.studies.misalignment import Misalignment
+from cagepose.studies.misalignment import FREEDOMS, Misalignment, out_of_place, turned_through
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +75,18 @@ class Insertion:
             return np.zeros(0)
         legs = next(iter(self.run.scene.loads[self.phase].drive.values()))
         return np.array([way_of(legs, share)[0] for share in self.drive.curve.share.tolist()])
+
+    def scene_out_of_place(self, freedom: str, amount: float) -> Scene:
+        """Return the scene in which the drive is out of place along one freedom, by metres or radians.
+
+        Raises
+        ------
+        SceneError
+            No such freedom, or the object would start inside the cage.
+        """
+        expect_choice(freedom, FREEDOMS, "freedom")
+        scene = self.run.scene
+        return misaligned_scene(scene, self.phase, out_of_place(freedom, amount, turned_through(scene)))
 
     @property
     def cannot_jam(self) -> bool:

@@ -101,7 +101,7 @@ def permitted_misalignment(
     if not nominal.is_end:
         end = MisalignmentEnd(None, 0.0, nominal.verdict)
         return dict.fromkeys(along, Misalignment(end, end))
-    through = scene.cage.pose_world_cage.inverse_transform(scene.object.pose_world_object.position_m)
+    through = turned_through(scene)
     sides = [_Side(name, sign, scene.size_m, through, within) for name in along for sign in (-1.0, 1.0)]
     while waiting := [side for side in sides if not side.is_done]:
         if progress is not None:
@@ -113,11 +113,26 @@ def permitted_misalignment(
     return {name: Misalignment(*ends[2 * place : 2 * place + 2]) for place, name in enumerate(along)}
 
 
+def turned_through(scene: Scene) -> FloatArray:
+    """Return the point that turns go through: the object's origin at the start, in the cage's frame, (3,), metres."""
+    return scene.cage.pose_world_cage.inverse_transform(scene.object.pose_world_object.position_m)
+
+
+def out_of_place(name: str, amount: float, through_cage_m: FloatArray) -> Pose:
+    """Return how a drive is moved, in the cage's frame, that is out of place along a freedom, by metres or radians."""
+    axis = np.eye(3)[FREEDOMS.index(name) % len(LENGTHS)]
+    if name in LENGTHS:
+        return Pose(amount * axis)
+    half = 0.5 * amount
+    turn = Pose((0, 0, 0), (math.cos(half), *(math.sin(half) * axis)))
+    return Pose(through_cage_m - turn.transform(through_cage_m), turn.quaternion_wxyz)
+
+
 class _Side:
     """The search along one freedom to one side; metres or radians, all above zero."""
 
     def __init__(self, name: str, sign: float, size_m: float, through_cage_m: FloatArray, within: float) -> None:
-        self._axis, self._sign, self._through = FREEDOMS.index(name), sign, through_cage_m
+        self._name, self._sign, self._through = name, sign, through_cage_m
         self._within = within
         self._limit = LENGTH_LIMIT_OF_SIZE * size_m if name in LENGTHS else ANGLE_LIMIT
         self._good, self._bad, self._fault, self._n_tried = 0.0, math.inf, "", 0
@@ -141,12 +156,7 @@ class _Side:
 
     def next_pose(self) -> Pose:
         """Return how the drive is moved, in the cage's frame, at the place that is to be tried next."""
-        amount = self._sign * self._next
-        if self._axis < len(LENGTHS):
-            return Pose(amount * np.eye(3)[self._axis])
-        half, axis = 0.5 * amount, np.eye(3)[self._axis - len(LENGTHS)]
-        turn = Pose((0, 0, 0), (math.cos(half), *(math.sin(half) * axis)))
-        return Pose(self._through - turn.transform(self._through), turn.quaternion_wxyz)
+        return out_of_place(self._name, self._sign * self._next, self._through)
 
     def note(self, fault: str | None) -> None:
         """Take the answer at that place: what is wrong there, or None."""

@@ -10,6 +10,7 @@ STUDY_MODULES = {
     "SALib": "SALib",
     "jinja2": "Jinja2",
     "matplotlib": "matplotlib",
+    "PIL": "Pillow",
 }
 
 
@@ -70,6 +71,19 @@ def require_import_page() -> None:
     """
     require_pillow()
     require("jinja2", "the page needs Jinja2", "plot")
+
+
+def require_insertion_page() -> None:
+    """Do nothing if all is installed that a page about an insertion needs.
+
+    Raises
+    ------
+    MissingExtraError
+        As `require_pillow`.
+    """
+    require_matplotlib()
+    require("jinja2", "the page needs Jinja2", "plot")
+    require_pillow()
 
 
 def require_study() -> None:

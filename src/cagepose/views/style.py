@@ -90,3 +90,9 @@ def figure_bytes(figure: Figure, suffix: str) -> bytes:
             figure.set_layout_engine(None)
         figure.savefig(stream, format=suffix.removeprefix("."), metadata=_METADATA[suffix], **_WRITER.get(suffix, {}))
     return stream.getvalue()
+
+
+def inner_svg(content: bytes) -> str:
+    """Return an SVG file without what stands before its first tag, to stand within a page."""
+    text = content.decode()
+    return text[text.index("<svg") :]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +13,6 @@ from cagepose.runs.driven_cage import cage_at_end, cage_at_start
 from cagepose.studies.touching import TouchFinder
 from cagepose.views.drive_words import drive_data, how_far
 from cagepose.views.event_figure import event_figure
-from cagepose.views.notebook import _Picture, run_html
 from cagepose.views.pose_figure import pose_figure
 from cagepose.views.viewer.look import PAINT, ink
 from cagepose.views.viewer.page import page
@@ -151,15 +149,6 @@ def test_figures_show_bodies_where_they_are(turned: Run) -> None:
         )
     steps = pose_figure(turned).axes[0].lines[0].get_xdata()
     assert len(steps) == 1 + 4 * 10
-
-
-def test_a_notebook_shows_bodies_where_they_are(closed: Run) -> None:
-    start, end = cage_at_start(closed.scene.cage), cage_at_end(closed)
-    picture = _Picture(closed.scene, [closed.scene.object.pose_world_object, closed.pose], [start, end])
-    html = run_html(closed)
-    for name, point in zip(("left/C1", "right/C1"), end.points_world[4:], strict=True):
-        x, y = picture._pixels(point).tolist()
-        assert re.search(rf'cx="{x:.1f}" cy="{y:.1f}"[^>]*><title>{name}</title>', html)
 
 
 def test_words_tell_how_far_a_drive_got_and_why_it_went_no_farther(closed: Run, turned: Run) -> None:

@@ -25,12 +25,15 @@ SHOT_MS, PAUSE_MS, END_MS = 80, 640, 2480
 """How long a shot stands, the last of an event, and the last of all; videos have a whole number of shots for each."""
 
 
-def png_bytes(shown: Playback) -> bytes:
-    """Return the end of a run as a picture, small motions exaggerated as far as that looks right."""
+def png_bytes(shown: Playback, phase: int | None = None) -> bytes:
+    """Return the end of a run, or of one of its phases, as a picture, small motions exaggerated as far as that looks
+    right.
+    """
+    last = next(shot for shot in reversed(shown.shots) if phase in (None, shot.phase))
     notes = PngInfo()
     notes.add_text("Software", MADE_BY)
     stream = io.BytesIO()
-    PictureMaker(Stage(shown)).picture(shown.shots[-1]).save(stream, "PNG", pnginfo=notes, optimize=True)
+    PictureMaker(Stage(shown)).picture(last).save(stream, "PNG", pnginfo=notes, optimize=True)
     return stream.getvalue()
 
 
