@@ -1,7 +1,7 @@
 """The boundary of a body whose triangles stand for planes, cylinders, cones and spheres: `exact_block`.
 
 A region of triangles on one surface is a face, trimmed by the curves in which it meets others. A curve is a line, an
-arc, or, as where two cylinders cross, a chain of short edges.
+arc, or, as where two cylinders cross, a chain of short arcs.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ import numpy as np
 from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.union.loops import Border, Loop, find_loops
 from cagepose.model.boundary.blocks import Block
-from cagepose.model.boundary.curves import ARC, LINE, Curve, curves_of, pieces_of
+from cagepose.model.boundary.chains import halved, in_arcs
+from cagepose.model.boundary.curves import ARC, CHAIN, LINE, Curve, curves_of, pieces_of
 from cagepose.model.boundary.regions import FacePlanes, regions_of
 from cagepose.model.boundary.round_features import ball_of, circle_of, is_within_caps, side_of, tip_of
 from cagepose.model.boundary.surface_corners import corners_of
@@ -31,6 +32,9 @@ from cagepose.model.surfaces import PLANE, SPHERE, Surface
 
 SMOOTH = 1e-7
 """Sine of the angle between faces beside a curve. With less, one goes over into the other smoothly."""
+
+HALVINGS = 4
+"""How often edges of chains are halved at most: each time, their arcs are an eighth as far off."""
 
 
 class Piece(NamedTuple):
@@ -56,6 +60,8 @@ class ExactSurface(NamedTuple):
     ----------
     vertices_m, triangles, twins
         See `Facets` and `cagepose.model.sides.twins_of`.
+    on
+        Which surface of its shape each triangle was told to stand for, (m,); -1: none.
     regions, curves
         See there.
     sines
@@ -65,6 +71,7 @@ class ExactSurface(NamedTuple):
     vertices_m: FloatArray
     triangles: IntArray
     twins: IntArray
+    on: IntArray
     regions: Regions
     curves: list[Curve]
     sines: list[float]
@@ -112,7 +119,22 @@ def _surface_of(placed: _Placed) -> ExactSurface:
     shape = placed.shape
     surfaces = [surface.changed(1.0, shape.pose_body_shape) for surface in shape.surfaces]
     first = np.array([*(surfaces.index(surface) for surface in surfaces), -1])
-    vertices_m, triangles, on, flat_m = shape.nodes_body(), shape.triangles, first[shape.on], shape.flat_m
+    found = _without_lost_balls(shape.nodes_body(), shape.triangles, first[shape.on], surfaces, shape.flat_m)
+    for _ in range(HALVINGS):
+        chains = [curve for curve in found.curves if curve.kind == CHAIN]
+        finer = halved(chains, found.vertices_m, found.triangles, found.on, found.regions.surfaces, shape.flat_m)
+        if len(finer[0]) == len(found.vertices_m):
+            break
+        found = _without_lost_balls(*finer, surfaces, shape.flat_m)
+    faces = found.regions.surfaces
+    curves = [piece for curve in found.curves for piece in in_arcs(curve, found.vertices_m, faces, shape.flat_m)]
+    return found._replace(curves=curves, sines=_sines_beside(found.vertices_m, curves, faces))
+
+
+def _without_lost_balls(
+    vertices_m: FloatArray, triangles: IntArray, on: IntArray, surfaces: Sequence[Surface], flat_m: float
+) -> ExactSurface:
+    """Return a surface with its regions and curves, without sines; balls that are none of our features are facets."""
     twins = twins_of(vertices_m, triangles)
     kept = np.array([not (surface.kind == SPHERE and surface.radius_m < 0.0) for surface in surfaces])
     while True:
@@ -126,14 +148,13 @@ def _surface_of(placed: _Placed) -> ExactSurface:
             for region in (curve.left, curve.right)
             if regions.surfaces[region].kind == SPHERE
         }
-        found = ExactSurface(vertices_m, triangles, twins, regions, curves, [])
+        found = ExactSurface(vertices_m, triangles, twins, on, regions, curves, [])
         if not lost:
             balls = [region for region, face in enumerate(regions.surfaces) if face.kind == SPHERE]
             lost = {regions.surfaces[region] for region in balls if not is_within_caps(found, region)}
         if not lost:
-            break
+            return found
         kept &= np.array([surface not in lost for surface in surfaces])
-    return found._replace(sines=_sines_beside(vertices_m, curves, regions.surfaces))
 
 
 def _sines_beside(vertices_m: FloatArray, curves: Sequence[Curve], surfaces: Sequence[Surface]) -> list[float]:
@@ -159,7 +180,8 @@ def _sine_beside(vertices_m: FloatArray, curve: Curve, surfaces: Sequence[Surfac
     middles = (start + end) / 2.0
     ways = unit_rows(end - start)
     if curve.kind == ARC:
-        middles, ways = start[:1], curve.tangent(start[0])[None]
+        middles = curve.at(np.array([0.5]), vertices_m)
+        ways = curve.tangent(middles[0])[None]
     one, other = surfaces[curve.left].normals(middles), surfaces[curve.right].normals(middles)
     sines = np.einsum("ij,ij->i", np.cross(one, other), ways)
     return float(sines[np.abs(sines).argmin()]) if (sines > 0.0).all() or (sines < 0.0).all() else 0.0
