@@ -1,4 +1,4 @@
-"""The curves in which the regions of a surface of triangles meet: lines, arcs, and chains of short edges."""
+"""The curves in which the regions of a surface of triangles meet: lines, arcs, and chains of short edges or bows."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.sides import IntArray, starts_and_ends
 from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, Surface
 
-LINE, ARC, CHAIN = "line", "arc", "chain"
+LINE, ARC, CHAIN, BOW = "line", "arc", "chain", "bow"
 ALONG_AXIS = 1e-6
 """Sine between a plane's normal and an axis; with less they are parallel."""
 WIDEST_PIECE = math.radians(61.0)
 """An arc is divided into pieces that are no wider."""
+LEAST_BULGE = 1e-5
+"""Fraction of a chord: what a round side is above it by less is straight there."""
 
 
 class Curve(NamedTuple):
@@ -25,7 +27,8 @@ class Curve(NamedTuple):
     Attributes
     ----------
     kind
-        "line", "arc" or "chain" of straight edges.
+        "line", "arc" or "chain" of straight edges; "bow": an edge of a chain along the outside of a round side, as an
+        arc over it. A part that lies on its round side lies on what bounds that, anywhere along it.
     nodes
         Vertices along it, (n,); the first is the last of one that is closed. The region to its left is ``left``.
     left, right
@@ -33,7 +36,7 @@ class Curve(NamedTuple):
     sides
         The side of a triangle of the left region between each two nodes, (n - 1,).
     center_m, axis, radius_m
-        Of an arc, which leads counter-clockwise about its axis.
+        Of an arc or a bow, which lead counter-clockwise about their axis.
     """
 
     kind: str
@@ -103,7 +106,8 @@ def curves_of(
         sides = np.array(chain)
         nodes = np.append(starts[sides], ends[sides[-1]])
         left, right = int(region[first]), int(region[twins[first]])
-        found.append(_curve(vertices_m, nodes, left, right, sides, surfaces, flat_m))
+        curve = _curve(vertices_m, nodes, left, right, sides, surfaces, flat_m)
+        found += [curve] if curve.kind == ARC else _bowed(vertices_m, curve, surfaces)
     return found
 
 
@@ -154,6 +158,35 @@ def _curve(
     radius = _radius(one, other, center, float(away.mean()))
     turn = float(np.einsum("ij,ij->i", np.cross(across[:-1], across[1:]), np.broadcast_to(way, across[1:].shape)).sum())
     return chain._replace(kind=ARC, center_m=center, axis=math.copysign(1.0, turn) * way, radius_m=radius)
+
+
+def _bowed(vertices_m: FloatArray, curve: Curve, surfaces: Sequence[Surface]) -> list[Curve]:
+    """Return the edges of a chain along the outside of a round side as bows, where it bulges over them; else the chain
+    itself. A bow leads through both ends of its edge and the place of the side above its middle.
+    """
+    beside = [surfaces[region] for region in (curve.left, curve.right)]
+    outside = [face for face in beside if face.kind in (CYLINDER, CONE) and face.radius_m > 0.0]
+    if not outside or any(face.kind == SPHERE for face in beside):
+        return [curve]
+    places, side = vertices_m[curve.nodes], outside[0]
+    middles, chords = (places[:-1] + places[1:]) / 2.0, places[1:] - places[:-1]
+    lengths = np.linalg.norm(chords, axis=1)
+    bulges = -side.heights(middles)
+    if (bulges <= LEAST_BULGE * lengths).all():
+        return [curve]
+    found = list[Curve]()
+    for k, bulge in enumerate(bulges.tolist()):
+        piece = curve._replace(kind=LINE, nodes=curve.nodes[k : k + 2], sides=curve.sides[k : k + 1])
+        if bulge > LEAST_BULGE * lengths[k]:
+            way = chords[k] / lengths[k]
+            up = side.normals(middles[k : k + 1])[0]
+            up = up - (up @ way) * way
+            up = up / np.linalg.norm(up)
+            radius = (0.25 * float(lengths[k]) ** 2 + bulge * bulge) / (2.0 * bulge)
+            center = middles[k] - (radius - bulge) * up
+            piece = piece._replace(kind=BOW, center_m=center, axis=np.cross(up, way), radius_m=radius)
+        found.append(piece)
+    return found
 
 
 def _is_straight(places_m: FloatArray, flat_m: float) -> bool:
@@ -221,7 +254,7 @@ def pieces_of(curve: Curve, vertices_m: FloatArray) -> list[tuple[int, int]]:
     last = len(curve.nodes) - 1
     if curve.kind == LINE:
         return [(0, last)]
-    if curve.kind == CHAIN:
+    if curve.kind in (CHAIN, BOW):
         return [(k, k + 1) for k in range(last)]
     seen = vertices_m[curve.nodes] - curve.center_m
     steps = np.einsum("ij,j->i", np.cross(seen[:-1], seen[1:]), curve.axis)

@@ -17,7 +17,7 @@ import numpy as np
 from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.union.loops import Border, Loop, find_loops
 from cagepose.model.boundary.blocks import Block
-from cagepose.model.boundary.curves import ARC, LINE, Curve, curves_of, pieces_of
+from cagepose.model.boundary.curves import ARC, BOW, LINE, Curve, curves_of, pieces_of
 from cagepose.model.boundary.regions import FacePlanes, regions_of
 from cagepose.model.boundary.round_features import ball_of, circle_of, is_within_caps, side_of, tip_of
 from cagepose.model.boundary.surface_corners import corners_of
@@ -25,7 +25,7 @@ from cagepose.model.boundary.surface_regions import Regions, regions_on
 from cagepose.model.boundary.trimmed import Edges, Faces, TrimmedUnion
 from cagepose.model.boundary.union_block import union_block, with_rows
 from cagepose.model.checks import FloatArray, unit_rows
-from cagepose.model.facets import Facets
+from cagepose.model.facets import FLAT, Facets
 from cagepose.model.sides import IntArray, twins_of
 from cagepose.model.surfaces import PLANE, SPHERE, Surface
 
@@ -79,7 +79,7 @@ def exact_block(shape: Facets, number: int) -> Block:
     rows = [
         circle_of(surface, index, number)
         for index, curve in enumerate(surface.curves)
-        if curve.kind == ARC and surface.sines[index] > SMOOTH
+        if curve.kind in (ARC, BOW) and surface.sines[index] > SMOOTH
     ]
     for region, face in enumerate(surface.regions.surfaces):
         if face.kind == SPHERE:
@@ -113,11 +113,13 @@ def _surface_of(placed: _Placed) -> ExactSurface:
     surfaces = [surface.changed(1.0, shape.pose_body_shape) for surface in shape.surfaces]
     first = np.array([*(surfaces.index(surface) for surface in surfaces), -1])
     vertices_m, triangles, on, flat_m = shape.nodes_body(), shape.triangles, first[shape.on], shape.flat_m
+    # what corners are off surfaces that are known, those of the other triangles are not off theirs
+    flat_of_others_m = FLAT * float(np.ptp(vertices_m, axis=0).max()) if surfaces else flat_m
     twins = twins_of(vertices_m, triangles)
     kept = np.array([not (surface.kind == SPHERE and surface.radius_m < 0.0) for surface in surfaces])
     while True:
         known = np.where(kept[on] & (on >= 0), on, -1)
-        regions = regions_on(vertices_m, triangles, twins, surfaces, known, flat_m)
+        regions = regions_on(vertices_m, triangles, twins, surfaces, known, flat_of_others_m)
         curves = curves_of(vertices_m, triangles, twins, regions.of_triangles, regions.surfaces, flat_m)
         lost = {
             regions.surfaces[region]
@@ -180,7 +182,7 @@ def _edges(surface: ExactSurface, number: int) -> Edges:
     """Return the straight convex edges."""
     starts, ends, planes = list[int](), list[int](), list[tuple[int, int]]()
     for curve in surface.curves:
-        if curve.kind != ARC:
+        if curve.kind not in (ARC, BOW):
             for first, last in pieces_of(curve, surface.vertices_m):
                 starts.append(int(curve.nodes[first]))
                 ends.append(int(curve.nodes[last]))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.model.boundary.curves import CHAIN
+from cagepose.model.boundary.curves import BOW, CHAIN
 from cagepose.model.boundary.exact_surface import ExactSurface, surface_of
 from cagepose.model.facets import Facets
 from cagepose.model.finer import onto
@@ -46,8 +46,10 @@ def off_curves(surface: ExactSurface) -> float:
     """Return how far chains of short edges are from the curves in which surfaces cross, metres."""
     farthest = 0.0
     for curve in surface.curves:
-        known = [surface.regions.surfaces[region] for region in (curve.left, curve.right)]
-        if curve.kind == CHAIN and any(face.is_round for face in known):
+        beside, is_exact = (curve.left, curve.right), surface.regions.is_exact
+        # a facet beside a bow crosses the round side anywhere
+        known = [surface.regions.surfaces[region] for region in beside if curve.kind == CHAIN or is_exact[region]]
+        if curve.kind in (CHAIN, BOW) and any(face.is_round for face in known):
             places = surface.vertices_m[curve.nodes]
             middles = (places[:-1] + places[1:]) / 2.0
             farthest = max(farthest, float(np.linalg.norm(onto(middles, known) - middles, axis=1).max()))

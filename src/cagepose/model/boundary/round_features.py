@@ -11,9 +11,9 @@ import numpy as np
 from cagepose.kernels.boundary.features import CIRCLE, HALF_SPACE, SEGMENT, VERTEX
 from cagepose.kernels.circles.places import within_turn
 from cagepose.model.boundary.blocks import NOWHERE, Row
-from cagepose.model.boundary.curves import ARC, Curve, width_of
+from cagepose.model.boundary.curves import ARC, BOW, Curve, width_of
 from cagepose.model.boundary.turned_rows import side_row, tip_row
-from cagepose.model.checks import FloatArray
+from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.surfaces import CONE, Surface
 
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 TIP = 1e-9
 """Fraction of a cone's greatest radius: a narrower end is its tip."""
+BESIDE_BOW = 1e-4
+"""Radians. Normals of a bow go on by so much beyond those at its ends, between which it is not quite on its side."""
 BEYOND_CAP = 1e-4
 """Cosine: corners of a ball's triangles are no farther beyond its circles."""
 GENERATORS = 48
@@ -31,24 +33,49 @@ FIRST_GENERATOR = 0.7548
 
 
 def circle_of(surface: ExactSurface, index: int, number: int) -> Row:
-    """Return a convex arc between two faces as a feature of part ``number``."""
+    """Return a convex arc between two faces, or a bow, as a feature of part ``number``."""
     curve = surface.curves[index]
-    place = surface.vertices_m[curve.nodes[0]]
-    toward = place - curve.center_m
-    toward = toward - (toward @ curve.axis) * curve.axis
-    out = toward / np.linalg.norm(toward)
-    angles = []
-    for region in (curve.left, curve.right):
-        normal = surface.regions.surfaces[region].normals(place[None])[0]
-        angles.append(math.atan2(float(normal @ curve.axis), float(normal @ out)))
+    places = surface.vertices_m[curve.nodes[: 1 if curve.kind == ARC else 2]]
+    seen = places - curve.center_m
+    outs = unit_rows(seen - np.outer(seen @ curve.axis, curve.axis))
+    normals = [surface.regions.surfaces[region].normals(places) for region in (curve.left, curve.right)]
+    angles = [
+        math.atan2(float(normal @ curve.axis), float(normal @ out))
+        for both in normals
+        for normal, out in zip(both, outs, strict=True)
+    ]
     low, high = min(angles), max(angles)
     if high - low > math.pi:
         low, high = high, low + 2.0 * math.pi
     reach = curve.radius_m * np.sqrt(np.maximum(0.0, 1.0 - curve.axis**2))
     box = np.stack([curve.center_m - reach, curve.center_m + reach])
-    width = width_of(curve, surface.vertices_m)
+    width, least = width_of(curve, surface.vertices_m), curve.radius_m
+    if curve.kind == BOW:
+        beside = BESIDE_BOW + width + _rise(surface, curve)
+        low, high = low - beside, high + beside
+        least = min(least, float(np.linalg.norm(places[1] - places[0])))
+        box = np.stack([places.min(axis=0) - least, places.max(axis=0) + least])
     numbers = (curve.radius_m, 0.0, 0.0, low, high, 0.0, width)
-    return Row(CIRCLE, number, curve.center_m, curve.axis, out, *numbers, [], curve.radius_m, box)
+    return Row(CIRCLE, number, curve.center_m, curve.axis, outs[0], *numbers, [], least, box)
+
+
+def _rise(surface: ExactSurface, curve: Curve) -> float:
+    """Return the greatest angle under which a bow is seen above the flat triangles beside its edge, radians: over these
+    a part tips onto it before they lie flat.
+    """
+    start, end = surface.vertices_m[curve.nodes]
+    middle, found = (start + end) / 2.0, 0.0
+    out = middle - curve.center_m
+    bulge = curve.radius_m - float(np.linalg.norm(out))
+    out = out / np.linalg.norm(out)
+    for side in (int(curve.sides[0]), int(surface.twins[curve.sides[0]])):
+        face = surface.regions.surfaces[surface.regions.of_triangles[side // 3]]
+        if not face.is_round:
+            opposite = surface.vertices_m[surface.triangles[side // 3, (side + 2) % 3]] - start
+            chord = (end - start) / np.linalg.norm(end - start)
+            depth = float(np.linalg.norm(opposite - (opposite @ chord) * chord))
+            found = max(found, math.atan2(bulge * abs(float(out @ face.axis)), depth))
+    return found
 
 
 def _caps(surface: ExactSurface, region: int) -> list[tuple[FloatArray, float]]:
