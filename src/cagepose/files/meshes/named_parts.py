@@ -22,7 +22,7 @@ def joined_where_open(surfaces: dict[str, Triangles]) -> dict[str, Triangles]:
         return k
 
     for k, mesh in enumerate(surfaces.values()):
-        corners = np.unique(mesh.faces.ravel()[open_sides(mesh.faces)]) if len(mesh.faces) else []
+        corners = np.unique(mesh.faces.ravel()[open_sides(mesh.faces)])
         for place in mesh.vertices[corners].tolist():
             low, high = sorted((leading(k), leading(first.setdefault(tuple(place), k))))
             root[high] = low
