@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from cagepose.model.boundary.curves import ARC, CHAIN, LINE, Curve
+from cagepose.model.boundary.surface_regions import Regions
 from cagepose.model.checks import FloatArray
 from cagepose.model.finer import onto
 from cagepose.model.sides import IntArray
@@ -19,14 +20,19 @@ STRAIGHT = 2.0
 """In what is flat: an edge that its curve is no farther from is straight."""
 
 
-def in_arcs(curve: Curve, vertices_m: FloatArray, surfaces: Sequence[Surface], flat_m: float) -> list[Curve]:
-    """Return a chain as arcs, one for each edge, through its ends and a place of both surfaces between them; other
+def exact_beside(curve: Curve, regions: Regions) -> list[Surface]:
+    """Return the surfaces beside a curve that are exact; facets beside it end somewhere near the other one."""
+    return [regions.surfaces[region] for region in (curve.left, curve.right) if regions.is_exact[region]]
+
+
+def in_arcs(curve: Curve, vertices_m: FloatArray, regions: Regions, flat_m: float) -> list[Curve]:
+    """Return a chain as arcs, one for each edge, through its ends and a place of its surfaces between them; other
     curves as they are.
     """
     if curve.kind != CHAIN:
         return [curve]
     start, end = vertices_m[curve.nodes[:-1]], vertices_m[curve.nodes[1:]]
-    chord, seen = end - start, onto((start + end) / 2.0, [surfaces[curve.left], surfaces[curve.right]]) - start
+    chord, seen = end - start, onto((start + end) / 2.0, exact_beside(curve, regions)) - start
     normal = np.cross(seen, chord)
     square, length = (np.einsum("ij,ij->i", one, one) for one in (normal, chord))
     found = list[Curve]()
@@ -42,11 +48,10 @@ def in_arcs(curve: Curve, vertices_m: FloatArray, surfaces: Sequence[Surface], f
     return found
 
 
-def off_chain(curve: Curve, vertices_m: FloatArray, surfaces: Sequence[Surface], flat_m: float) -> FloatArray:
+def off_chain(curve: Curve, vertices_m: FloatArray, regions: Regions, flat_m: float) -> FloatArray:
     """Return how far each arc of a chain is from the curve in which its surfaces cross, metres, (n - 1,)."""
-    known = [surfaces[curve.left], surfaces[curve.right]]
-    found = np.zeros(len(curve.nodes) - 1)
-    for k, piece in enumerate(in_arcs(curve, vertices_m, surfaces, flat_m)):
+    known, found = exact_beside(curve, regions), np.zeros(len(curve.nodes) - 1)
+    for k, piece in enumerate(in_arcs(curve, vertices_m, regions, flat_m)):
         if piece.kind == ARC:
             places = piece.at(ALONG, vertices_m)
             found[k] = max(float(np.abs(surface.heights(places)).max()) for surface in known)
@@ -58,19 +63,19 @@ def halved(
     vertices_m: FloatArray,
     triangles: IntArray,
     on: IntArray,
-    surfaces: Sequence[Surface],
+    regions: Regions,
     flat_m: float,
 ) -> tuple[FloatArray, IntArray, IntArray]:
-    """Return vertices, triangles and what these stand for with those edges of chains halved, at a place of both of
-    their surfaces, whose arcs are not on them yet; ``surfaces`` are those of regions.
+    """Return vertices, triangles and what these stand for with those edges of chains halved, at a place of
+    their surfaces, whose arcs are not on them yet.
     """
     middles, of_sides = list[FloatArray](), dict[tuple[int, int], int]()
     for curve in chains:
-        for k in np.flatnonzero(off_chain(curve, vertices_m, surfaces, flat_m) > flat_m).tolist():
+        for k in np.flatnonzero(off_chain(curve, vertices_m, regions, flat_m) > flat_m).tolist():
             start, end = sorted(curve.nodes[k : k + 2].tolist())
             of_sides[start, end] = len(vertices_m) + len(middles)
             middle = vertices_m[[start, end]].mean(axis=0, keepdims=True)
-            middles.append(onto(middle, [surfaces[curve.left], surfaces[curve.right]])[0])
+            middles.append(onto(middle, exact_beside(curve, regions))[0])
     if not middles:
         return vertices_m, triangles, on
     found, stand_for = list[tuple[int, int, int]](), list[int]()

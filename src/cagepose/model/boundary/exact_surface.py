@@ -26,13 +26,14 @@ from cagepose.model.boundary.surface_regions import Regions, regions_on
 from cagepose.model.boundary.trimmed import Edges, Faces, TrimmedUnion
 from cagepose.model.boundary.union_block import union_block, with_rows
 from cagepose.model.checks import FloatArray, unit_rows
-from cagepose.model.facets import Facets
+from cagepose.model.facets import FLAT, Facets
 from cagepose.model.sides import IntArray, twins_of
 from cagepose.model.surfaces import PLANE, SPHERE, Surface
 
 SMOOTH = 1e-7
 """Sine of the angle between faces beside a curve. With less, one goes over into the other smoothly."""
-
+IN_PLANE = 1.0 - 1e-6
+"""Cosine between the axis of an arc and the normal of a face that it bounds."""
 HALVINGS = 4
 """How often edges of chains are halved at most: each time, their arcs are an eighth as far off."""
 
@@ -122,24 +123,26 @@ def _surface_of(placed: _Placed) -> ExactSurface:
     found = _without_lost_balls(shape.nodes_body(), shape.triangles, first[shape.on], surfaces, shape.flat_m)
     for _ in range(HALVINGS):
         chains = [curve for curve in found.curves if curve.kind == CHAIN]
-        finer = halved(chains, found.vertices_m, found.triangles, found.on, found.regions.surfaces, shape.flat_m)
+        finer = halved(chains, found.vertices_m, found.triangles, found.on, found.regions, shape.flat_m)
         if len(finer[0]) == len(found.vertices_m):
             break
         found = _without_lost_balls(*finer, surfaces, shape.flat_m)
-    faces = found.regions.surfaces
-    curves = [piece for curve in found.curves for piece in in_arcs(curve, found.vertices_m, faces, shape.flat_m)]
-    return found._replace(curves=curves, sines=_sines_beside(found.vertices_m, curves, faces))
+    regions = found.regions
+    curves = [piece for curve in found.curves for piece in in_arcs(curve, found.vertices_m, regions, shape.flat_m)]
+    return found._replace(curves=curves, sines=_sines_beside(found.vertices_m, curves, regions.surfaces))
 
 
 def _without_lost_balls(
     vertices_m: FloatArray, triangles: IntArray, on: IntArray, surfaces: Sequence[Surface], flat_m: float
 ) -> ExactSurface:
     """Return a surface with its regions and curves, without sines; balls that are none of our features are facets."""
+    # what corners are off surfaces that are known, those of the other triangles are not off theirs
+    flat_of_others_m = FLAT * float(np.ptp(vertices_m, axis=0).max()) if surfaces else flat_m
     twins = twins_of(vertices_m, triangles)
     kept = np.array([not (surface.kind == SPHERE and surface.radius_m < 0.0) for surface in surfaces])
     while True:
         known = np.where(kept[on] & (on >= 0), on, -1)
-        regions = regions_on(vertices_m, triangles, twins, surfaces, known, flat_m)
+        regions = regions_on(vertices_m, triangles, twins, surfaces, known, flat_of_others_m)
         curves = curves_of(vertices_m, triangles, twins, regions.of_triangles, regions.surfaces, flat_m)
         lost = {
             regions.surfaces[region]
@@ -248,7 +251,7 @@ def _faces(surface: ExactSurface, pieces: Sequence[Sequence[Piece]], number: int
 def _curvature(surface: ExactSurface, piece: Piece, normal: FloatArray) -> float:
     """Return the curvature of a piece with its face to the left, see `kernels.union.loops.Border`."""
     curve = surface.curves[piece.curve]
-    if curve.kind != ARC:
+    if curve.kind != ARC or abs(float(normal @ curve.axis)) < IN_PLANE:  # over a facet it rises above that
         return 0.0
     start, end = surface.vertices_m[piece.start], surface.vertices_m[piece.end]
     inward = np.cross(normal, end - start)

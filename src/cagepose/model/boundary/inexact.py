@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.model.boundary.chains import ALONG
+from cagepose.model.boundary.chains import ALONG, exact_beside
 from cagepose.model.boundary.curves import ARC
 from cagepose.model.boundary.exact_surface import ExactSurface, surface_of
 from cagepose.model.facets import Facets
@@ -48,8 +48,8 @@ def off_curves(surface: ExactSurface) -> float:
     for curve in surface.curves:
         if curve.kind == ARC:
             places = curve.at(ALONG, surface.vertices_m)
-            for region in (curve.left, curve.right):
-                farthest = max(farthest, float(np.abs(surface.regions.surfaces[region].heights(places)).max()))
+            for face in exact_beside(curve, surface.regions):
+                farthest = max(farthest, float(np.abs(face.heights(places)).max()))
     return farthest
 
 

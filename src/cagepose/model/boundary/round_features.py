@@ -47,14 +47,31 @@ def circle_of(surface: ExactSurface, index: int, number: int) -> Row:
     first, last = sorted(angles, key=lambda found: float(found[0]))
     if last[0] - first[0] > math.pi:
         first, last = last, first + 2.0 * math.pi
+    rise = _rise(surface, curve)
     reach = curve.radius_m * np.sqrt(np.maximum(0.0, 1.0 - curve.axis**2))
     box = np.stack([curve.center_m - reach, curve.center_m + reach])
     if width < NARROW:
         bulge = curve.radius_m * (1.0 - math.cos(0.5 * width))
         box = np.stack([np.maximum(box[0], places.min(axis=0) - bulge), np.minimum(box[1], places.max(axis=0) + bulge)])
-    numbers = (curve.radius_m, 0.0, 0.0, float(first.min()), float(last.max()), 0.0, width)
+    numbers = (curve.radius_m, 0.0, 0.0, float(first.min()) - rise, float(last.max()) + rise, 0.0, width)
     least = curve.radius_m * min(1.0, width)
     return Row(CIRCLE, number, curve.center_m, curve.axis, outward[0], *numbers, [], least, box)
+
+
+def _rise(surface: ExactSurface, curve: Curve) -> float:
+    """Return the greatest angle under which an arc is seen above flat facets beside it, radians: over these a part tips
+    onto it before they lie flat.
+    """
+    start, end = surface.vertices_m[curve.nodes[0]], surface.vertices_m[curve.nodes[-1]]
+    found = 0.0
+    for side in (int(curve.sides[0]), int(surface.twins[curve.sides[0]])):
+        region = int(surface.regions.of_triangles[side // 3])
+        if not surface.regions.is_exact[region]:
+            face, chord = surface.regions.surfaces[region], (end - start) / np.linalg.norm(end - start)
+            opposite = surface.vertices_m[surface.triangles[side // 3, (side + 2) % 3]] - start
+            depth = float(np.linalg.norm(opposite - (opposite @ chord) * chord))
+            found = max(found, math.atan2(float(face.heights(curve.at(ALONG, surface.vertices_m)).max()), depth))
+    return found
 
 
 def _caps(surface: ExactSurface, region: int) -> list[tuple[FloatArray, float]]:
