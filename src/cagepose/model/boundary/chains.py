@@ -1,9 +1,14 @@
-"""Curves that are no lines or circles, as where two cylinders cross, as short arcs: `halved`, `in_arcs`."""
+"""Curves that are no lines or circles, as where two cylinders cross, as short arcs: `halved`, `with_arcs`.
+
+Each edge of such a chain is two arcs that have the tangents of the curve at its ends, and one in the middle (a biarc,
+Bolton, "Biarc curves", Computer-Aided Design 7, 1975): a corner between them would be felt where a part rolls over it.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,10 +19,20 @@ from cagepose.model.finer import onto
 from cagepose.model.sides import IntArray
 from cagepose.model.surfaces import Surface
 
-ALONG = np.array((0.21, 0.79))
-"""Shares of the way along an arc through three places of a curve where it is about farthest from that."""
+ALONG = np.array((0.21, 0.5, 0.79))
+"""Shares of the way along an arc where it is about farthest from the curve that it stands for."""
 STRAIGHT = 2.0
 """In what is flat: an edge that its curve is no farther from is straight."""
+LEAST_SINE = 1e-3
+"""Of the angle between two surfaces: with less, the tangent of the curve in which they cross is not told."""
+
+
+class Circle(NamedTuple):
+    """That an arc is on, counter-clockwise about its axis."""
+
+    center_m: FloatArray
+    axis: FloatArray
+    radius_m: float
 
 
 def exact_beside(curve: Curve, regions: Regions) -> list[Surface]:
@@ -25,36 +40,88 @@ def exact_beside(curve: Curve, regions: Regions) -> list[Surface]:
     return [regions.surfaces[region] for region in (curve.left, curve.right) if regions.is_exact[region]]
 
 
-def in_arcs(curve: Curve, vertices_m: FloatArray, regions: Regions, flat_m: float) -> list[Curve]:
-    """Return a chain as arcs, one for each edge, through its ends and a place of its surfaces between them; other
-    curves as they are.
-    """
-    if curve.kind != CHAIN:
-        return [curve]
-    start, end = vertices_m[curve.nodes[:-1]], vertices_m[curve.nodes[1:]]
-    chord, seen = end - start, onto((start + end) / 2.0, exact_beside(curve, regions)) - start
+def with_arcs(
+    curves: Sequence[Curve], vertices_m: FloatArray, regions: Regions, flat_m: float
+) -> tuple[list[Curve], FloatArray]:
+    """Return curves with each edge of a chain as an arc or two, and vertices with the places where two of them meet."""
+    found, places = list[Curve](), list[FloatArray]()
+    for curve in curves:
+        if curve.kind != CHAIN:
+            found.append(curve)
+            continue
+        for k in range(len(curve.sides)):
+            nodes = [int(curve.nodes[k]), int(curve.nodes[k + 1])]
+            edge = curve._replace(kind=LINE, nodes=np.array(nodes), sides=curve.sides[k : k + 1])
+            middle, circles = _arcs(vertices_m[nodes], exact_beside(curve, regions), flat_m)
+            if middle is not None:
+                nodes.insert(1, len(vertices_m) + len(places))
+                places.append(middle)
+            arcs = [edge._replace(kind=ARC, **circle._asdict()) for circle in circles]
+            found += [arc._replace(nodes=np.array(nodes[n : n + 2])) for n, arc in enumerate(arcs)] or [edge]
+    return found, np.concatenate([vertices_m, np.array(places).reshape(-1, 3)])
+
+
+def _arcs(
+    ends_m: FloatArray, surfaces: Sequence[Surface], flat_m: float
+) -> tuple[FloatArray | None, list[Circle]]:
+    """Return the circles of an edge between two places of its surfaces, and where two of them meet."""
+    start, end = ends_m
+    seen = onto(ends_m.mean(axis=0, keepdims=True), surfaces)[0] - start
+    chord = end - start
+    length = float(np.linalg.norm(chord))
+    if float(np.linalg.norm(np.cross(seen, chord))) <= STRAIGHT * flat_m * length:
+        return None, []
+    tangents = _tangents(ends_m, surfaces)
+    if tangents is None:
+        return None, [_circle_through(start, seen, chord)]
+    first, last = tangents
+    along = float(chord @ (first + last))
+    far = length**2 / (along + math.sqrt(along**2 + 2.0 * (1.0 - float(first @ last)) * length**2))
+    middle = 0.5 * (start + end + far * (first - last))
+    return middle, [_circle(start, first, middle), _circle(end, last, middle)]
+
+
+def _tangents(ends_m: FloatArray, surfaces: Sequence[Surface]) -> tuple[FloatArray, FloatArray] | None:
+    """Return the unit vectors along a curve at both ends of an edge of it; None: surfaces do not tell."""
+    if len(surfaces) < 2:
+        return None
+    ways = np.cross(*(surface.normals(ends_m) for surface in surfaces))
+    sizes = np.linalg.norm(ways, axis=1, keepdims=True)
+    if sizes.min() < LEAST_SINE:
+        return None
+    first, last = ways / sizes
+    chord = ends_m[1] - ends_m[0]
+    return math.copysign(1.0, float(first @ chord)) * first, math.copysign(1.0, float(last @ chord)) * last
+
+
+def _circle(place: FloatArray, tangent: FloatArray, other: FloatArray) -> Circle:
+    """Return the circle through a place, along a unit vector there, and through another place."""
+    seen = other - place
+    across = seen - (seen @ tangent) * tangent
+    size = float(np.linalg.norm(across))
+    out, radius = across / size, float(seen @ seen) / (2.0 * size)
+    return Circle(place + radius * out, np.cross(tangent, out), radius)
+
+
+def _circle_through(start: FloatArray, seen: FloatArray, chord: FloatArray) -> Circle:
+    """Return the circle through a place and two others that are seen from there, the last one at the chord's end."""
     normal = np.cross(seen, chord)
-    square, length = (np.einsum("ij,ij->i", one, one) for one in (normal, chord))
-    found = list[Curve]()
-    for k in range(len(chord)):
-        piece = curve._replace(kind=LINE, nodes=curve.nodes[k : k + 2], sides=curve.sides[k : k + 1])
-        if square[k] > (STRAIGHT * flat_m) ** 2 * length[k]:
-            # the centre of the circle through three places, seen from the first
-            toward = length[k] * np.cross(normal[k], seen[k]) - (seen[k] @ seen[k]) * np.cross(normal[k], chord[k])
-            toward = toward / (2.0 * square[k])
-            axis, radius = normal[k] / math.sqrt(square[k]), float(np.linalg.norm(toward))
-            piece = piece._replace(kind=ARC, center_m=start[k] + toward, axis=axis, radius_m=radius)
-        found.append(piece)
-    return found
+    square = float(normal @ normal)
+    toward = (chord @ chord) * np.cross(normal, seen) - (seen @ seen) * np.cross(normal, chord)
+    toward = toward / (2.0 * square)
+    return Circle(start + toward, normal / math.sqrt(square), float(np.linalg.norm(toward)))
 
 
-def off_chain(curve: Curve, vertices_m: FloatArray, regions: Regions, flat_m: float) -> FloatArray:
-    """Return how far each arc of a chain is from the curve in which its surfaces cross, metres, (n - 1,)."""
-    known, found = exact_beside(curve, regions), np.zeros(len(curve.nodes) - 1)
-    for k, piece in enumerate(in_arcs(curve, vertices_m, regions, flat_m)):
-        if piece.kind == ARC:
-            places = piece.at(ALONG, vertices_m)
-            found[k] = max(float(np.abs(surface.heights(places)).max()) for surface in known)
+def off_edges(curve: Curve, vertices_m: FloatArray, regions: Regions, flat_m: float) -> FloatArray:
+    """Return how far the arcs of each edge of a chain are from its surfaces, metres, (n - 1,)."""
+    arcs, vertices = with_arcs([curve], vertices_m, regions, flat_m)
+    found = np.zeros(len(curve.sides))
+    edges = {int(side): k for k, side in enumerate(curve.sides)}
+    for arc in arcs:
+        if arc.kind == ARC:
+            places = arc.at(ALONG, vertices)
+            off = max(float(np.abs(surface.heights(places)).max()) for surface in exact_beside(curve, regions))
+            found[edges[int(arc.sides[0])]] = max(found[edges[int(arc.sides[0])]], off)
     return found
 
 
@@ -71,7 +138,7 @@ def halved(
     """
     middles, of_sides = list[FloatArray](), dict[tuple[int, int], int]()
     for curve in chains:
-        for k in np.flatnonzero(off_chain(curve, vertices_m, regions, flat_m) > flat_m).tolist():
+        for k in np.flatnonzero(off_edges(curve, vertices_m, regions, flat_m) > flat_m).tolist():
             start, end = sorted(curve.nodes[k : k + 2].tolist())
             of_sides[start, end] = len(vertices_m) + len(middles)
             middle = vertices_m[[start, end]].mean(axis=0, keepdims=True)

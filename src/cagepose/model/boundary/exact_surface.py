@@ -17,7 +17,7 @@ import numpy as np
 from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.union.loops import Border, Loop, find_loops
 from cagepose.model.boundary.blocks import Block
-from cagepose.model.boundary.chains import halved, in_arcs
+from cagepose.model.boundary.chains import halved, with_arcs
 from cagepose.model.boundary.curves import ARC, CHAIN, LINE, Curve, curves_of, pieces_of
 from cagepose.model.boundary.regions import FacePlanes, regions_of
 from cagepose.model.boundary.round_features import ball_of, circle_of, is_within_caps, side_of, tip_of
@@ -60,7 +60,7 @@ class ExactSurface(NamedTuple):
     Attributes
     ----------
     vertices_m, triangles, twins
-        See `Facets` and `cagepose.model.sides.twins_of`.
+        See `Facets` and `cagepose.model.sides.twins_of`. Behind corners of triangles, there are places between two arcs.
     on
         Which surface of its shape each triangle was told to stand for, (m,); -1: none.
     regions, curves
@@ -128,8 +128,9 @@ def _surface_of(placed: _Placed) -> ExactSurface:
             break
         found = _without_lost_balls(*finer, surfaces, shape.flat_m)
     regions = found.regions
-    curves = [piece for curve in found.curves for piece in in_arcs(curve, found.vertices_m, regions, shape.flat_m)]
-    return found._replace(curves=curves, sines=_sines_beside(found.vertices_m, curves, regions.surfaces))
+    curves, vertices_m = with_arcs(found.curves, found.vertices_m, regions, shape.flat_m)
+    sines = _sines_beside(vertices_m, curves, regions.surfaces)
+    return found._replace(vertices_m=vertices_m, curves=curves, sines=sines)
 
 
 def _without_lost_balls(
