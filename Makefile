@@ -21,27 +21,29 @@ help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 setup: $(READY)  ## install cagepose and all of its tools into .venv
-	@echo "Ready: $(BIN)/cagepose"
+	@echo "Ready. Try: $(BIN)/cagepose run scenes/rail-pitch.yaml"
 
 $(LOCKED): requirements.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
 	    echo "cagepose needs Python 3.11 or newer, and $(PYTHON) is not one; try: make setup PYTHON=python3.12" >&2; exit 1; }
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
 	    echo "$(PYTHON) cannot make virtual environments; on Debian and Ubuntu: apt install python3-venv" >&2; exit 1; }
-	@echo "Creating $(VENV) and installing the locked packages (a minute or two, once) ..."
+	@echo "Step 1 of 4: a Python environment of its own in $(VENV)"
 	@$(PYTHON) -m venv --clear $(VENV)
+	@echo "Step 2 of 4: fetch and install the locked packages (a minute or two, once)"
 	@set -o pipefail; $(BIN)/python -m pip install --progress-bar off --require-hashes -r requirements.lock | awk ' \
-	    /^Collecting/ { n++; if (n % 20 == 0) { print "  " n " packages found"; fflush() } } \
-	    /^Installing/ { print "  installing " n " packages"; fflush() }'
+	    /^Collecting/ { n++; if (n % 10 == 0) { print "  " n " packages fetched"; fflush() } } \
+	    /^Installing/ { print "  all " n " packages fetched; now they are installed"; fflush() }'
 	@touch $@
 
 # A kernel's change makes a new library; `pip install` below then finds it built.
 $(BUILT): $(LOCKED) $(shell find src/cagepose/kernels -name '*.py') $(wildcard build_kernels/*.*)
-	@echo "Compiling the kernels (a minute or two; later builds compile what has changed) ..."
+	@echo "Step 3 of 4: compile the kernels (some five minutes the first time, later only what has changed)"
 	@PYTHONPATH=src $(BIN)/python -m build_kernels
 	@touch $@
 
 $(READY): $(LOCKED) $(BUILT) pyproject.toml
+	@echo "Step 4 of 4: install cagepose itself"
 	@$(BIN)/python -m pip install -qq --no-deps --no-build-isolation -e .
 	@touch $@
 

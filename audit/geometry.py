@@ -140,7 +140,7 @@ def acting(scene: Scene, load: Load) -> list[Acting]:
     pushes = [
         Acting(push.direction * (1.0 if magnitude is None else magnitude), push.at_object_m)
         for push, magnitude in zip(load.pushes, magnitudes, strict=True)
-        if not push.follows
+        if push.at_object_m is not None and not push.follows
     ]
     if down is None:
         return pushes
@@ -153,15 +153,17 @@ def acting(scene: Scene, load: Load) -> list[Acting]:
 def acting_at(
     scene: Scene, load: Load, pose: Pose, driven: Mapping[str, Pose] | None = None
 ) -> tuple[list[Acting], FloatArray]:
-    """All forces of a load at a pose, those that follow the object and those of springs too, and its moments, (3,).
+    """All forces of a load at a pose, those that follow the object or stay in the world and those of springs too, and
+    its moments, (3,).
 
     Bodies that were ``driven`` are where this says, in the cage's frame, all others where they start.
     """
     acts, couple = acting(scene, load), np.zeros(3)
     for push in load.pushes:
-        if push.follows:
+        if push.follows or push.at_world_m is not None:
             magnitude = 1.0 if push.magnitude_n is None else push.magnitude_n
-            acts.append(Acting(magnitude * pose.rotation @ push.direction, push.at_object_m))
+            direction = pose.rotation @ push.direction if push.follows else push.direction
+            acts.append(Acting(magnitude * direction, push.at_object(pose)))
     for spring in load.springs:
         start = scene.object.pose_world_object.transform(spring.at_object_m)
         end = scene.cage.spring_end_world(spring)

@@ -14,6 +14,7 @@ from bench.drives_table import drive_rows
 from bench.first_use_table import first_use_rows
 from bench.growth_table import growth_rows
 from bench.limits import measured_limits
+from bench.pulls_table import pull_rows
 from bench.rail_table import rail_rows
 from bench.report import show
 from bench.rows import RESULTS, Row, machine, save
@@ -28,6 +29,7 @@ TABLES: dict[str, Callable[[], Iterator[Row]]] = {
     "growth": growth_rows,
     "batch": batch_rows,
     "first-use": first_use_rows,
+    "pulls": pull_rows,
 }
 
 

@@ -170,7 +170,7 @@ class DrivenMujoco:
         for push in load.pushes:
             one = float(push.magnitude_n or 1.0) * push.direction
             force += one
-            moment += np.cross(pose.rotation @ (push.at_object_m - self._scene.object.center_of_gravity_m), one)
+            moment += np.cross(pose.rotation @ (push.at_object(pose) - self._scene.object.center_of_gravity_m), one)
         data.xfrc_applied[self._body] = *force, *moment
 
     def _along(self) -> float:

@@ -92,7 +92,7 @@ def peer_body(scene: Scene, radius_mm: float = SPHERE_RADIUS_MM) -> PeerBody:
     loads = []
     for load in scene.loads:
         if load.force is not None:
-            loads.append(PeerLoad(load.force.direction, load.force.at_object_m * MM - cog_mm))
+            loads.append(PeerLoad(load.force.direction, load.force.at_object(pose) * MM - cog_mm))
         else:
             assert load.gravity_world is not None
             loads.append(PeerLoad(load.gravity_world / np.linalg.norm(load.gravity_world), np.zeros(3)))

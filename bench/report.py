@@ -18,6 +18,7 @@ TITLES = {
     "growth": "How the cost of one run grows: exponent of a power law fitted to the upper half",
     "batch": "Many runs in one call",
     "first-use": "The first run in a new process",
+    "pulls": "Pulls by hand in the live viewer: from the pointer's move to the picture. Depth: in sizes of the scene",
 }
 
 

@@ -22,7 +22,8 @@ class Row:
     Attributes
     ----------
     table
-        Which benchmark it belongs to: "rail", "scenes", "shapes", "drives", "growth", "batch", "first-use".
+        Which benchmark it belongs to: "rail", "scenes", "shapes", "drives", "growth", "batch", "first-use",
+        "pulls".
     median_s
         Wall time of one run (of one call of all runs in "batch"), median, seconds.
     error

@@ -32,7 +32,7 @@ export class Camera {
     this.canvas.setPointerCapture(event.pointerId);
     if (!this.pointers.size) {
       this.travelled = 0;
-      this.carry = this.grabbed(event.offsetX, event.offsetY);
+      this.carry = event.button === 0 && !event.shiftKey ? this.grabbed(event.offsetX, event.offsetY) : null;
     }
     this.pointers.set(event.pointerId, [event.offsetX, event.offsetY]);
   }

@@ -31,13 +31,14 @@ export class Drawing {
     this.take(stage, exaggerations);
     this.allNames = stage.data.names.length <= this.sizes.few_names;
     this.camera = new Camera(canvas, stage.data, { content: () => this.content(), under: (x, y) => this.under(x, y), covered, changed, clicked: (x, y) => clicked(this.touchAt(x, y)),
-      grabbed: (x, y) => (Number.isFinite(this.object.hit(...this.camera.ray(x, y))) ? grabbed() : null) });
+      grabbed: (x, y) => { const place = this.placeOnObject(x, y); return place && grabbed(place); } });
     this.camera.fit(); // with loads and forces, whose arrows have a camera by now
   }
 
-  // Shows another run from now on.
-  take(stage, exaggerations) {
+  // Shows another run from now on, with the longest arrows for so much force.
+  take(stage, exaggerations, greatestForce = stage.data.greatestForce) {
     this.exaggerations = exaggerations; // of each phase; its owner changes them
+    this.greatestForce = greatestForce;
     const { data } = stage;
     if (this.stage) { // where the origin of drawing coordinates was, and their unit
       const [before, size] = [this.stage.middle(), this.stage.data.unitsPerDrawing];
@@ -128,7 +129,10 @@ export class Drawing {
     this.marks.end();
     const scale = window.devicePixelRatio;
     this.world.draw(camera, scale);
+    const pull = this.pulling(pose);
+    if (pull) this.labels.push([pull.tip, this.hand.text, true]);
     this.overlay.write(this.labels, camera, stage.data, scale);
+    if (pull) this.overlay.arrow(camera.project(pull.at), camera.project(pull.tip), this.sizes.paint.hand);
   }
 
   get written() {
@@ -172,8 +176,8 @@ export class Drawing {
 
   // Where a load's arrow starts and ends: that of a force ends where it acts, that of a moment starts at the centre of
   // gravity; a spring leads to where it is held, or part of the way.
-  loadEnds(load, { cage }, pose) {
-    const at = carried(pose, load.at);
+  loadEnds(load, { cage, truth }, pose) {
+    const at = carried(pose, load.atWorld ? carried(inverse(truth), load.atWorld) : load.at);
     if (load.kind === "spring") {
       const way = sub(carried(cage[load.body], load.to), at);
       return [at, add(at, times(Math.min(1, this.sizes.longest_spring / (norm(way) || 1)), way))];
@@ -186,7 +190,7 @@ export class Drawing {
   forceArrow(touch, pose, look) {
     const place = this.stage.place(touch, look);
     const pixel = this.camera.pixel(place);
-    const force = times(this.sizes.force * pixel / this.stage.data.greatestForce, rotated(pose.q, touch.force));
+    const force = times(this.sizes.force * pixel / this.greatestForce, rotated(pose.q, touch.force));
     const tip = this.camera.isClose() && norm(force) ? sub(place, times(RING * pixel / norm(force), force)) : place;
     return [sub(tip, force), tip];
   }
@@ -258,6 +262,14 @@ export class Drawing {
     }
   }
 
+  // Where a hand holds the object, and where it pulls to; null: it does not. It is as far off as that, so that the arrow is as
+  // long as the way of the pointer.
+  pulling(pose) {
+    if (!this.hand) return null;
+    const at = carried(pose, this.hand.at);
+    return { at, tip: add(at, times(this.camera.pixel(at), this.hand.pull)) };
+  }
+
   // A spring, as a line that winds.
   drawCoil(start, end) {
     const way = sub(end, start);
@@ -318,6 +330,19 @@ export class Drawing {
       return { touch, apart: Math.hypot(across - x, down - y) };
     }).sort((one, other) => one.apart - other.apart);
     return near.length && near[0].apart < PICKED ? near[0].touch : null;
+  }
+
+  // The place of the object that is seen at a pixel, be it through a body of glass; null: it is not seen there.
+  placeOnObject(x, y) {
+    const [from, direction] = this.camera.ray(x, y);
+    const nearest = this.object.hit(from, direction);
+    const isHidden = this.bodies.some((body) => !body.isGlass && body.hit(from, direction) < nearest);
+    return Number.isFinite(nearest) && !isHidden ? add(this.camera.target, add(from, times(nearest, direction))) : null;
+  }
+
+  // A place of the object that is shown, in its own frame.
+  inObject(place) {
+    return carried(inverse(this.shown(this.time).pose), place);
   }
 
   // What is seen at a pixel: a mark's place, or that of a body.

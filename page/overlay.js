@@ -2,7 +2,7 @@
 
 import { laidOut } from "./labels.js";
 
-const PAPER = "#f6f7f9", HEIGHT = 13;
+const PAPER = "#f6f7f9", HEIGHT = 13, HEAD = 14;
 
 export class Overlay {
   constructor(canvas) {
@@ -48,6 +48,30 @@ export class Overlay {
     this.pen.moveTo(...from);
     this.pen.lineTo(...to);
     this.pen.stroke();
+  }
+
+  // From a ball to a tip, over all else.
+  arrow([x, y], tip, color) {
+    const { pen } = this, way = [tip[0] - x, tip[1] - y], length = Math.hypot(...way) || 1;
+    const [along, head] = [way.map((part) => part / length), Math.min(HEAD, 0.7 * length)];
+    const place = (back, aside) => [tip[0] - back * along[0] - aside * along[1], tip[1] - back * along[1] + aside * along[0]];
+    for (const [width, paint] of [[7, PAPER], [4, color]]) {
+      pen.lineJoin = "round";
+      pen.lineWidth = width;
+      pen.strokeStyle = pen.fillStyle = paint;
+      pen.beginPath();
+      pen.moveTo(x, y);
+      pen.lineTo(...place(head, 0));
+      pen.stroke();
+      pen.beginPath();
+      pen.arc(x, y, width, 0, 2 * Math.PI);
+      pen.fill();
+      pen.beginPath();
+      for (const corner of [tip, place(head, 0.5 * head), place(head, -0.5 * head)]) pen.lineTo(...corner);
+      pen.closePath();
+      if (paint === PAPER) pen.stroke();
+      pen.fill();
+    }
   }
 
   drawAxes(camera, height) {

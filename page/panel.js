@@ -1,16 +1,14 @@
 // The controls of a live page: what they say is sent to the server, and what it answers is shown.
 
+import { post } from "./asking.js";
 import { $, element } from "./words.js";
 
 export class Panel {
   // `answered(data)` shows a new run.
-  constructor(controls, fileName, answered) {
-    this.controls = controls;
-    this.fileName = fileName;
-    this.answered = answered;
+  constructor(controls, fileName, asker, answered) {
+    Object.assign(this, { controls, fileName, asker, answered });
     this.values = controls.map((control) => control.value);
     this.start = [0, 0, 0]; // how far the start was dragged
-    this.asking = this.stale = false;
     this.inputs = [];
     this.build();
     $("undo").addEventListener("click", () => this.undo());
@@ -88,45 +86,19 @@ export class Panel {
     return values;
   }
 
-  send(path) {
-    return fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(this.changed()) });
-  }
-
-  // One question at a time; what moved meanwhile is asked next.
-  async ask() {
-    this.stale = true;
-    if (this.asking) return;
-    this.asking = true;
-    try {
-      while (this.stale) {
-        this.stale = false;
-        const response = await this.send("run");
-        const answer = await response.json();
-        if (response.ok) this.answered(answer);
-        this.complain(response.ok ? [] : answer.problems);
-      }
-    } catch {
-      this.complain(["The viewer's server does not answer; start cagepose view again. What is shown is the last answer."]);
-    }
-    this.asking = false;
+  ask() {
+    this.asker.ask("run", () => this.changed(), this.answered);
   }
 
   async save() {
     try {
-      const response = await this.send("scene");
-      if (!response.ok) return this.complain((await response.json()).problems);
+      const response = await post("scene", this.changed());
+      if (!response.ok) return this.asker.complain((await response.json()).problems, "scene that could be run");
       const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(await response.blob()), download: this.fileName });
       link.click();
       URL.revokeObjectURL(link.href);
     } catch {
-      this.complain(["The viewer's server does not answer; start cagepose view again."]);
+      this.asker.complain(["The viewer's server does not answer; start cagepose view again."], "answer");
     }
-  }
-
-  complain(problems) {
-    const told = problems.length > 3 ? [...problems.slice(0, 2), `and ${problems.length - 2} more`] : problems;
-    $("problems").replaceChildren(...told.map((problem) => element("p", problem)));
-    if (problems.length) $("problems").append(element("p", "Shown is the last scene that could be run."));
-    $("problems").hidden = !problems.length;
   }
 }

@@ -1,16 +1,21 @@
 // The page: what time it is, how much motions are exaggerated, and everything that shows or changes that.
 
-import { add, norm, times } from "./geometry.js";
+import { add, carried, norm, sub, times } from "./geometry.js";
 import { Drawing } from "./drawing.js";
 import { ForceCurve, NOISE } from "./force.js";
+import { Asker } from "./asking.js";
 import { Card } from "./card.js";
+import { Hand } from "./hand.js";
 import { Panel } from "./panel.js";
 import { Plot } from "./plot.js";
 import { Stage } from "./stage.js";
 import { $, digits, element } from "./words.js";
 
 const MOTION_S = 1, PAUSE_S = 0.35;
+const HOVER_MS = 60; // between two looks at what is under the pointer
+const NEAR = 0.25; // drawing units: so far is a part shown that a pull does not let come to rest
 const IN_A_ROW_MS = 400; // pictures farther apart than this were asked for one by one
+const LONGEST = 2.5; // times as long as before, an arrow of a force that a pull gives rise to; and so much is play shown too large
 
 let data = JSON.parse($("data").textContent);
 let stage = new Stage(data);
@@ -19,6 +24,8 @@ const player = { time: end, playing: false, drawn: 0, drawnTime: null, drawnExag
 let exaggerations = data.phases.map((phase) => phase.proposed); // of each phase
 let drawing = null, waiting = false, isShown = true, isAhead = false, resting = 0, lastTick = null;
 let panel = null, carries = false; // the object's start, which follows the pointer
+let hand = null; // what pulls at the object
+const asker = new Asker();
 let shownAt = -Infinity;
 let told = null; // on what that depends which stands around the picture now
 
@@ -30,7 +37,7 @@ const card = new Card((touch) => {
 }, refresh);
 try {
   drawing = new Drawing(stage, exaggerations, $("scene"), $("labels"), {
-    covered: () => $("bar").offsetTop + $("bar").offsetHeight, changed: refresh, clicked: (touch) => { card.pick(touch); refresh(); }, grabbed: () => (panel && $("start").checked ? carryStart() : null) });
+    covered: () => $("bar").offsetTop + $("bar").offsetHeight, changed: refresh, clicked: (touch) => { card.pick(touch); refresh(); }, grabbed });
 } catch (error) {
   $("trouble").textContent = `No picture: ${error.message}. All else on this page works.`;
   $("trouble").hidden = false;
@@ -109,17 +116,67 @@ const chosen = new Map(); // exaggerations that somebody has set, by phase
 
 // Shows another run of the same scene, at its end.
 function replaceRun(answer) {
+  showRun(answer, answer.phases.map((phase, index) => chosen.get(index) ?? phase.proposed));
+  hand?.start(answer.grips);
+  showAhead();
+}
+
+// Shows the run of this scene as a hand has led it on from the end of a phase: all as large as before, or else it would jump.
+function showLed(answer, from) {
+  const before = exaggerations[stage.data.led?.phase === from ? from + 1 : from];
+  const { proposed } = answer.phases.at(-1);
+  const kept = before > LONGEST * proposed ? proposed : before;
+  const longest = Math.max(stage.data.led ? drawing?.greatestForce ?? 0 : data.greatestForce, answer.greatestForce / LONGEST);
+  showRun(answer, [...exaggerations.slice(0, from + 1), kept], longest);
+  if (!answer.led.rests) seek(onItsWay(answer.led.from));
+  showAhead();
+}
+
+// When the object is last as near as this to where it rested, so that it does not get out of the picture.
+function onItsWay(place) {
+  const apart = (time) => norm(sub(carried(stage.truePose(time), data.center), place));
+  let time = end; // of shots alone: between two of them it may be inside of something
+  while (time > data.phases.at(-2).last && apart(time) > NEAR) time -= 1;
+  return time;
+}
+
+function showRun(answer, itsExaggerations, greatestForce = answer.greatestForce) {
   data = answer;
   stage = new Stage(data);
   end = stage.shots.length - 1;
-  exaggerations = data.phases.map((phase, index) => chosen.get(index) ?? phase.proposed);
-  drawing?.take(stage, exaggerations);
+  exaggerations = itsExaggerations;
+  drawing?.take(stage, exaggerations, greatestForce);
   card.pick(null);
   player.answers += 1;
   fill();
   pause();
   seek(carries ? 0 : end);
-  showAhead();
+}
+
+// What takes the way of a pointer that is pressed at a place of the object; null: it turns the view.
+function grabbed(place) {
+  if (!panel) return null;
+  return $("start").checked ? carryStart() : $("pull").checked && !drawing.camera.isClose() ? pullAt(place) : null;
+}
+
+// The pointer's looks say where it would pull.
+let lookedAt = 0;
+function hover({ buttons, offsetX, offsetY, timeStamp }) {
+  if (buttons || timeStamp - lookedAt < HOVER_MS) return;
+  lookedAt = timeStamp;
+  $("scene").classList.toggle("grab", $("pull").checked && !$("start").checked && !drawing.camera.isClose() && Boolean(drawing.placeOnObject(offsetX, offsetY)));
+}
+
+// Pulls at the object where it rests at the end of the phase on screen.
+function pullAt(place) {
+  const carry = hand.take(drawing.inObject(place).map((value) => value * data.unitsPerDrawing), phase());
+  if (!carry) return null;
+  pause();
+  seek(data.phases[phase()].last);
+  return (bit) => {
+    carry(bit && times(1 / drawing.camera.pixel(), bit));
+    refresh();
+  };
 }
 
 // Takes the way of the pointer, bit by bit: the start goes along it, and the run from there is shown when it is let go.
@@ -178,7 +235,11 @@ function reveal(line) {
 function show() {
   const start = performance.now();
   isShown = true;
-  if (drawing) drawing.draw(player.time);
+  if (drawing) {
+    const arrow = hand?.arrow;
+    drawing.hand = arrow && { ...arrow, at: times(1 / data.unitsPerDrawing, arrow.at) };
+    drawing.draw(player.time);
+  }
   if (drawing && start - shownAt < IN_A_ROW_MS) drawing.world.paced(start - shownAt);
   shownAt = start;
   card.show(data, stage, player.time);
@@ -298,9 +359,11 @@ window.cagepose = {
       touches: stage.shot(player.time).touches.map((touch) => stage.place(touch, look)),
       bodies: data.bodies.map((_, index) => stage.bodyPose(index, look).p), drive: stage.drive(player.time),
       camera: camera && { target: camera.target, half: camera.half, back: camera.axes()[2], perspective: camera.perspective },
+      isBusy: asker.isBusy, answerMs: asker.tookMs, hand: hand?.led && { ...hand.led, force: hand.force, shownForce: hand.shownForce, at: hand.at },
       picked: card.touch && data.names[card.touch.point], hasShadows: drawing?.world.hasShadows, built: drawing?.built };
   },
   fitted: () => drawing.content().map((place) => drawing.camera.project(place)), // apart: 12,000 places in a crowded scene
+  isOnObject: (x, y) => Boolean(drawing.placeOnObject(x, y)),
   project: (place) => drawing.camera.project(place),
   look: (place, back, half) => drawing.camera.lookAt(place, back, half),
 };
@@ -310,6 +373,9 @@ $("exaggeration").max = data.exaggerations.length - 1;
 for (const option of ["names", "start", "glass", "perspective", "points"]) $(option).disabled = !drawing;
 if (drawing) $("names").checked = drawing.allNames;
 if (!data.points.length) $("points").parentElement.hidden = true;
-if (data.controls) panel = new Panel(data.controls, data.fileName, replaceRun);
+if (data.controls) panel = new Panel(data.controls, data.fileName, asker, replaceRun);
+if (panel && drawing) hand = new Hand(asker, data.grips, { values: () => panel.changed(), show: showLed, restart: () => panel.ask(), refuse: (why) => asker.complain([why], "answer") });
+$("pull").parentElement.hidden = !hand;
+if (hand) $("scene").addEventListener("pointermove", hover);
 show();
 drawing?.fit();

@@ -106,7 +106,7 @@ export class Body {
   seeThrough(opacity) {
     Object.assign(this.front.material, { opacity, transparent: opacity < 1, depthWrite: opacity === 1 });
     this.front.renderOrder = opacity < 1 ? 2 : 0;
-    this.back.visible = opacity < 1; // of a closed surface that hides its inside nothing is seen from there
+    this.isGlass = this.back.visible = opacity < 1; // of a closed surface that hides its inside nothing is seen from there
     this.front.material.needsUpdate = true;
   }
 

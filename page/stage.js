@@ -58,7 +58,7 @@ export class Stage {
 
   // How a moment is shown: exaggerated by `factor`, from the pose of the shot `reference`, with bodies where they are then.
   look(time, exaggerations) {
-    return { ...this.exaggerated(time, exaggerations), cage: this.cage(time) };
+    return { ...this.exaggerated(time, exaggerations), cage: this.cage(time), truth: this.truePose(time) };
   }
 
   exaggerated(time, exaggerations) {

@@ -118,6 +118,7 @@ def count_drawing(page: Page) -> None:
 
 def drawn_for_a_picture(page: Page) -> dict[str, float]:
     """Draws and triangles of each of the pictures while the view is turned; `count_drawing` came first."""
+    page.evaluate("() => { pull.checked = false; }")  # else this drags the object
     ask = "[{ ...goes }, cagepose.state().drawn]"
     before, drawn = page.evaluate(ask)
     page.locator("#scene").drag_to(page.locator("#scene"), target_position={"x": 300, "y": 300})

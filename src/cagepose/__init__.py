@@ -1,4 +1,4 @@
-"""Where a loosely held part comes to rest, through which contacts, and why.
+"""How much play a loosely held part has, where it comes to rest, through which contacts, and why.
 
     import cagepose
     run = cagepose.run(cagepose.load_scene("scene.yaml"))

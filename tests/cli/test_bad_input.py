@@ -105,7 +105,8 @@ EDITS = [
     ("force without direction", GRAVITY, GRAVITY + PUSH.replace("[1, 0, 0]", "[0, 0, 0]"),
      "17:24: loads[1].force.direction: is all zeros, which points nowhere; give at least one number other than 0"),
     ("force point missing", GRAVITY, GRAVITY + PUSH.replace(", at: [0, 0, 0]", ""),
-     "17:12: loads[1].force.at: is missing; add it, for example at: [0, 0, 0]"),
+     "17:12: loads[1].force: has neither at nor at_world; give one of them: at rides on the object, at_world stays in"
+     " the world"),
     ("neither gravity nor force", GRAVITY, "",
      "14:5: loads[0]: has no gravity, force, moment, spring, drive or press; give at least one of them"),
     ("unknown method", "name: sample", "name: sample\nmethod: magic", "2:9: method: is 'magic';"
@@ -246,6 +247,56 @@ def test_problems_of_several_nouns_come_at_once(command: Callable[..., Any], in_
     (in_folder / "scene.yaml").write_text(text, encoding="utf-8")
     answer = command("run", "scene.yaml")
     assert [line.split(": ")[1] for line in answer.err.splitlines()] == ["cage.points.C1", "cage.points.C4"]
+
+
+def test_mistakes_of_all_kinds_in_all_sections_come_at_once(command: Callable[..., Any], in_folder: Path) -> None:
+    """Of the form, of single parts, and of parts beside each other, with what follows from none of them."""
+    text = """\
+name: pin
+object:
+  mass: -1
+  shapes:
+    - {name: pin, cylinder: {radius: 2.9, lenght: 60}}
+    - {name: cap, convex: {vertices: [[0, 0, 0], [1, 0, 0], [2, 0, 0]]}}
+    - {name: eye, hole: {radius: 1, depth: 5, in: [pin]}}
+cage:
+  shapes:
+    - {name: lower, box: {size: [14, 14]}}
+    - {name: upper, box: {size: [14, 14, 20]}, position: [0, 0, 20]}
+    - {name: bore, hole: {radius: 3, depth: 20, in: [lower]}, position: [0, 0, 10]}
+    - {name: mouth, hole: {radius: 3, depth: 20, in: [uper]}, position: [0, 0, 30]}
+loads:
+  - {name: weight, gravity: 9.81}
+  - name: pull
+    forces: [{direction: [0, 0, 1], at_world: [0, 0, 9], magnitude: 2, follows: true}]
+    springs: [{at: [0, 0, 0], to: [0, 0, 9], stiffness: 0}]
+    moments: [{direction: [0, 0, 0], magnitude: 1}]
+friction: 0.2
+"""
+    (in_folder / "scene.yaml").write_text(text, encoding="utf-8")
+    told = [line.split(": ")[1] for line in command("run", "scene.yaml").err.splitlines()]
+    assert told == [
+        "object.mass",
+        "object.shapes[0].cylinder.length",
+        "object.shapes[0].cylinder.lenght",
+        "object.shapes[1].convex.vertices",
+        "cage.shapes[0].box.size",
+        "cage.shapes[3].hole.in[0]",
+        "loads[0].gravity",
+        "loads[1].forces[0].at_world",
+        "loads[1].springs[0].stiffness",
+        "loads[1].moments[0].direction",
+        "friction",
+    ]
+
+
+def test_what_lies_inside_is_told_beside_mistakes_in_loads(
+    command: Callable[..., Any], in_folder: Path, sample_text: str
+) -> None:
+    text = sample_text.replace("[4, 4, 0]", "[4, 4, 12]").replace("gravity: [0, 0, -1]", "gravity: [0, 0, 0]")
+    (in_folder / "scene.yaml").write_text(text, encoding="utf-8")
+    told = [line.split(": ")[1] for line in command("run", "scene.yaml").err.splitlines()]
+    assert told == ["cage.points.C1", "loads[0].gravity"]
 
 
 def test_points_in_a_list_are_found_by_their_default_names(

@@ -16,6 +16,8 @@ import cagepose.runs.solve
 from cagepose import Run, RunFileError, Scene, load_run, load_scene
 from cagepose.cli import report
 from cagepose.model.methods import METHODS
+from cagepose.views.viewer.page_data import page_data
+from cagepose.views.viewer.playback import playback
 
 Command = Callable[..., Any]
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
@@ -65,6 +67,20 @@ def test_the_report_names_pose_contacts_verdict_time_and_warnings(command: Comma
     assert "tie" in warnings[0]
     assert "45 deg" in warnings[1]
     assert "the mechanics contradicts this verdict: with a friction coefficient of 0.1003" in warnings[2]
+
+
+def test_a_part_that_falls_over_is_told_in_a_line_of_its_own_and_on_the_page(command: Command, in_folder: Path) -> None:
+    """A box on its edge, a hair past it: it falls to its side. And one that turns on the floor has not fallen."""
+    floor = "cage: {shapes: [{name: floor, box: {size: [200, 200, 20]}, position: [0, 0, -10]}]}\n"
+    part = "object: {boxes: [{size: [20, 20, 60], position: [-10, 0, 30]}], pose: {euler_zyx_deg: [0, 19, 0]}}\n"
+    scene = in_folder / "box.yaml"
+    scene.write_text(f"name: box\n{part}{floor}loads: [{{name: fall, gravity: [0, 0, -1]}}]\n")
+    assert summary(command("run", "box.yaml").out)["turned"] == "fall: 71 deg about y, so it tipped or rolled"
+    told = page_data(playback(cagepose.run(load_scene(scene))))
+    assert told["turned"] == ["fall: 71 deg about y, so it tipped or rolled"]
+    assert any("It turned far in fall" in note for note in told["notes"])
+    scene.write_text(scene.read_text().replace("0, 19, 0", "0, 18, 0"))  # atan(20 / 60) is 18.4 deg
+    assert "turned" not in summary(command("run", "box.yaml").out)
 
 
 def test_lengths_are_shown_in_the_scenes_unit(command: Command, sample: str) -> None:

@@ -49,6 +49,18 @@ def test_mujoco_ends_where_cagepose_ends(name):
         assert phase.distance_m <= phase.allowed_m < 5e-4 * found.run.scene.size_m
 
 
+def test_mujoco_ends_there_under_a_force_that_stays_in_the_world():
+    """A plate slides 2 mm on below it, so that its feet carry other shares than under one that rides."""
+    feet = [(-0.03, -0.02, 0), (-0.03, 0.02, 0), (0.03, 0, 0)]
+    walls = [(-0.025, -0.031, 0.008), (0.025, -0.031, 0.008), (0.025, 0.031, 0.008), (0.042, 0, 0.008)]
+    plate = Object([Box((0.08, 0.06, 0.01))], mass_kg=0.3, pose=Pose((0, 0, 0.005)))
+    jet = Force((0, 0, -1), magnitude_n=2.0, at_world_m=(-0.01, 0.005, 0.013))
+    push = Load("push", gravity=(0, 0, -9.81), forces=[jet, Force((1, 0, 0), (-0.04, 0, 0), 3.0)])
+    found = crosscheck(run(Scene(plate, Cage([*feet, *walls]), [push])))
+    assert found.agrees, found.phases[0].reasons
+    assert found.phases[0].mujoco.pose.position_m[0] == pytest.approx(0.002, abs=1e-5)
+
+
 def test_a_roller_a_tenth_of_a_millimetre_off_is_seen(monkeypatch):
     """The rail is 1200 mm long. A wrong answer of cagepose would be seen as this is."""
     scene = load_scene(FILES["rail-pitch"])

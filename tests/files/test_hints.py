@@ -33,6 +33,11 @@ SLIPS: list[tuple[str, str, str]] = [
         "  shapes: [{sphere: {radius: 1}, euler_xyz: [0, 0, 9]}]\n  boxes:",
         "object.shapes[0].euler_xyz: is no known shape; angles about axes in another order are other angles",
     ),
+    (
+        BOXES,
+        "  shapes: [{hole: {radius: 1, depth: 3, in: b}, position: [0, 0, 5]}]\n  boxes:",
+        "object.shapes[0].hole.in: is text 'b'; write in: [b]",
+    ),
     (UNIT, "units: mm", "units: is text 'mm'; write units: {length: mm}"),
     (UNIT, "units: {length: millimetres}", "units.length: is text 'millimetres'; write mm"),
     (UNIT, "units: inches", "units: is text 'inches'; write units: {length: in}"),

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cagepose import SceneFileError, load_run, run, save_run
+from cagepose import SceneFileError, load_run, load_scene, run, save_run, save_scene
 from cagepose.files.scene_file import parse_scene
 
 TEXT = """\
@@ -46,6 +46,19 @@ def test_moments_and_stiffnesses_have_the_files_unit_of_length(unit: str) -> Non
     assert other.to_m.tolist() == pytest.approx([0, 9 * length, 60 * length])
 
 
+def test_a_force_may_stay_at_a_point_of_the_world(tmp_path: Path) -> None:
+    scene = parse_scene(TEXT.replace("UNIT", "mm").replace("at: [1, 2, 3]", "at_world: [1, 2, 3]"))
+    (fixed, riding) = scene.loads[0].forces
+    assert (fixed.at_object_m, riding.at_world_m) == (None, None)
+    assert fixed.at_world_m == pytest.approx([1e-3, 2e-3, 3e-3])
+    assert "m of the world" in repr(fixed)
+    save_scene(scene, tmp_path / "again.yaml")
+    again = load_scene(tmp_path / "again.yaml", ["loads[0].forces[0].at_world[2]=4"]).loads[0].forces[0]
+    assert again.at_world_m == pytest.approx([1e-3, 2e-3, 4e-3])
+    save_run(run(scene), tmp_path / "run.json")
+    assert np.array_equal(load_run(tmp_path / "run.json").scene.loads[0].forces[0].at_world_m, fixed.at_world_m)
+
+
 def test_one_value_of_a_spring_is_set() -> None:
     scene = parse_scene(TEXT.replace("UNIT", "mm"), set_values=["loads[0].springs[1].preload=7"])
     assert scene.loads[0].springs[1].preload_n == 7.0
@@ -63,6 +76,12 @@ WRONG = {
         "    force: {direction: [1, 0, 0], at: [0, 0, 0]}\n    gravity",
         "loads[0].forces: stands beside force",
     ),
+    "at: [0, 0, 5]": (
+        "at_world: [0, 0, 5]",
+        "10:42: loads[0].forces[1].at_world: is a point of the world, and the force",
+    ),
+    "at: [1, 2, 3], ": ("", "9:9: loads[0].forces[0]: has neither at nor at_world; give one of them"),
+    "at: [1, 2, 3], m": ("at: [1, 2, 3], at_world: [0, 0, 0], m", "loads[0].forces[0]: has both at and at_world"),
     "preload: -3": ("prelaod: -3", "loads[0].springs[0].prelaod: is no known key; did you mean preload?"),
 }
 

@@ -59,6 +59,12 @@ def test_euler_angles_and_quaternions_say_the_same(sample_text: str) -> None:
     assert np.allclose(angles.cage.points_world(), quaternion.cage.points_world(), atol=1e-17)
 
 
+def test_a_box_without_a_position_is_at_the_origin_of_its_part(sample_text: str) -> None:
+    assert "      position: [0, 0, 0]\n" in sample_text
+    boxes = parse_scene(sample_text.replace("      position: [0, 0, 0]\n", "")).object.boxes
+    assert boxes[0].pose_object_box.position_m.tolist() == [0.0, 0.0, 0.0]
+
+
 def test_points_have_default_names_or_their_own(sample_text: str) -> None:
     assert parse_scene(sample_text).cage.names == ("C1", "C2", "C3", "C4")
     named = sample_text.replace("[[4, 4, 0], [4, -4, 0], [-4, -4, 0], [-4, 4, 0]]", "{b: [4, 4, 0], a: [0, 0, 0]}")
@@ -160,7 +166,7 @@ def test_set_can_mend_a_broken_file(sample_text: str) -> None:
         ("=3", "the path is empty; write keys with dots, such as object.mass"),
         ("a..b=3", "'a..b' is not a path to a value; write keys with dots and indices in brackets,"
                    " such as object.boxes[0].size[2]"),
-        ("object.boxes[1].name=x", "object.boxes holds 1 values, so it has no index 1; give an index from 0 to 0"),
+        ("object.boxes[1].name=x", "object.boxes holds 1 value, so it has no index 1; give an index from 0 to 0"),
         ("object.boxes.size=3", "object.boxes is a list, which has no key 'size'; give an index from 0 to 0"),
         ("name.first=x", "name is a single value, which holds no 'first'; set name itself"),
         ("object.inertia[0]=1", "object.inertia is missing, so it has no index 0; write it into the scene, or set it as"

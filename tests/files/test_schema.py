@@ -45,6 +45,8 @@ def test_every_example_is_valid(sample_text: str) -> None:
             if len(path) > len(shape) and path[len(shape)] not in KINDS:
                 _put(data, (*shape, "sphere"), {"radius": 1})
             _put(data, path, example)
+            if path[-1] in ("direction", "magnitude") and "force" in str(path[2]):
+                _put(data, (*path[:-1], "at"), [0, 0, 0])
             # Neighbours of an example may be missing; the example itself must be right.
             assert {details["type"] for details in _errors(data)} <= {"missing"}, path
             n_tried += 1

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cagepose import run
+from cagepose import play, run
 from cagepose.files.scene_file import parse_scene
 from cagepose.files.schema import scene_json_schema
 from cagepose.files.schema_shapes import KINDS
@@ -25,12 +25,19 @@ def test_the_starter_runs_through_all_its_phases_and_ends_in_a_proven_rest() -> 
     ]
 
 
+def test_the_first_play_says_that_the_starter_is_caged_and_how_loose_it_is() -> None:
+    found = play(parse_scene(starter_text("mine")))
+    assert found.verdict == "caged"
+    assert all(end.certified is not None for ends in found.freedoms.values() for end in (ends.low, ends.high))
+    assert found.freedoms["z"].high.exact == pytest.approx(0.5e-3)
+
+
 def test_the_rules_of_the_paper_hold_the_starter_before_its_last_stop() -> None:
-    """At side1 and end; side2 is not reached, and the mechanics says that the clamp would turn it on."""
+    """At side1 and end1; side2 is not reached, and the mechanics says that the clamp would turn it on."""
     result = run(parse_scene(starter_text("mine")), "stepwise")
     assert [phase.verdict for phase in result.phases] == ["stable", "stable"]
     assert {event.rule for phase in result.phases for event in phase.events} >= {"A-1", "A-4", "Slp-1", "Slp-2", "B-4"}
-    assert {contact.point for contact in result.contacts} == {"pin1", "pin2", "pin3", "side1", "end"}
+    assert {contact.point for contact in result.contacts} == {"pin1", "pin2", "pin3", "side1", "end1"}
     (warning,) = result.warnings
     assert warning.startswith("clamp: the mechanics contradicts this verdict")
 
@@ -70,7 +77,7 @@ def test_every_option_of_the_starter_works_when_its_hash_is_removed() -> None:
     assert scene.object.mass_kg is not None
     assert scene.object.inertia_kg_m2 is not None
     assert (scene.method, scene.metric) == ("quasistatic", "release")
-    assert scene.adjustable[0].key == "cage.points.end[0]"
+    assert scene.adjustable[0].key == "cage.points.end1[0]"
     assert len(text.splitlines()) == len(starter_text("x").splitlines())
     assert run(scene).verdict == "rests"
 

@@ -12,6 +12,7 @@ from cagepose.kernels.contact.loads import (
     CARDAN_MOMENT,
     DEAD_FORCE,
     DEAD_MOMENT,
+    FIXED_FORCE,
     FOLLOWING_FORCE,
     FOLLOWING_MOMENT,
     SPRING,
@@ -33,6 +34,7 @@ KINDS = {
     "following moment": FOLLOWING_MOMENT,
     "spring": SPRING,
     "cardan moment": CARDAN_MOMENT,
+    "fixed force": FIXED_FORCE,
 }
 
 
@@ -57,6 +59,8 @@ def load(kind: int, random: np.random.Generator) -> PhaseLoad:
     if kind == SPRING:
         action.anchor[:] = 3.0 * random.normal(size=3)
         action.stiffness, action.tension_at_zero = random.uniform(0.5, 2.0), random.normal()
+    if kind == FIXED_FORCE:
+        action.anchor[:], action.arm_object[:] = random.normal(size=3), 0.0
     if kind == CARDAN_MOMENT:
         action.anchor[:] = unit(random)
         action.arm_object[:] = unit(random)
@@ -159,4 +163,4 @@ def test_a_spring_whose_tension_is_its_length_times_stiffness_is_linear_also_at_
     assert np.allclose(hessian[:3, :3], action.stiffness * np.eye(3))
     away = (here[0] + 1e-3, here[1], here[2])
     assert work_done(acts, away, upright, here, upright) == pytest.approx(0.5e-6 * action.stiffness, rel=1e-10)
-    assert longest_pull(acts, away, upright, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.02, 1.5) == 1.5
+    assert longest_pull(acts, away, upright, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.02, 1.5, 0.5) == 1.5

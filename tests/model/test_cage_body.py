@@ -85,7 +85,7 @@ def test_a_body_without_a_pose_starts_where_its_numbers_say() -> None:
 WRONG: dict[str, tuple[Callable[[], object], str]] = {
     "a name that is none": (lambda: CageBody(5, [(0, 0, 0)]), "name: is 5; give text"),  # type: ignore[arg-type]
     "no pose": (lambda: CageBody("jaw", [(0, 0, 0)], pose=(0, 0, 1)), "pose: is (0, 0, 1); give a cagepose.Pose"),  # type: ignore[arg-type]
-    "too few names": (lambda: CageBody("jaw", [(0, 0, 0)], ["A", "B"]), "names: holds 2 names for 1 points"),
+    "too few names": (lambda: CageBody("jaw", [(0, 0, 0)], ["A", "B"]), "names: holds 2 names for 1 point"),
     "a hole in what is of the cage": (
         lambda: Cage(shapes=[block("wall")], bodies=[CageBody("jaw", shapes=[Hole(0.01, 0.01, None, ["wall"])])]),
         "shapes[0].hole.in[0]: is 'wall', no box or shape of this body",

@@ -48,10 +48,29 @@ def test_all_that_acts_is_named_and_points_where_it_does(fastened: Run) -> None:
     turned, cage = Pose((0, 0, 0.008), euler_zyx=(0.5, 0.0, 0.0)), cage_at_start(fastened.scene.cage)
     assert acts[1].direction_at(turned, cage) == pytest.approx([np.cos(0.5), np.sin(0.5), 0.0])
     assert acts[2].direction_at(turned, cage).tolist() == [0.0, 0.0, 1.0]
-    here = turned.transform(acts[3].at_object_m)
+    here = turned.transform(acts[3].at_object(turned))
     assert acts[3].direction_at(turned, cage) == pytest.approx(
         (np.array([0.02, 0.0, -0.04]) - here) / np.linalg.norm(np.array([0.02, 0.0, -0.04]) - here)
     )
+
+
+def test_the_arrow_of_a_force_that_stays_in_the_world_ends_where_it_acts_on_the_part() -> None:
+    """Exaggerated, the part is shown elsewhere; its place under the force goes with it."""
+    fixed = "forces: [{direction: [0, 0, -1], at_world: [-10, 5, 13], magnitude: 2}]"
+    slid = run(parse_scene(TEXT.replace(TEXT[TEXT.index("forces:") :], f"{fixed}\n")))
+    shown = playback(slid)
+    maker, stage = PictureMaker(Stage(shown), [1]), Stage(shown)
+    maker.picture(shown.shots[-1])
+    (act,) = [act for act in shown.loads[0] if act.kind == "force"]
+    ends = [maker._ends(act, shot, shot.pose_world_object, maker.now)[1] for shot in shown.shots]
+    assert np.ptp(ends, axis=0) == pytest.approx(0.0, abs=1e-12)
+    assert ends[0] == pytest.approx(stage.place(np.array([-10, 5, 13]) * 1e-3))
+    last = shown.shots[-1]
+    aside = Pose((0.001, 0.0, 0.0)) @ last.pose_world_object
+    apart = maker._ends(act, last, aside, maker.now)[1] - ends[-1]
+    assert apart == pytest.approx([0.001 / stage.size_m, 0.0, 0.0])
+    told = page_data(shown)["phases"][0]["loads"]
+    assert [load["atWorld"] for load in told if load["kind"] == "force"] == [pytest.approx(ends[0].tolist())]
 
 
 def test_a_spring_is_drawn_from_end_to_end_around_its_line() -> None:
@@ -71,11 +90,11 @@ def test_pictures_have_all_that_acts_inside(fastened: Run) -> None:
     last = shown.shots[-1]
     drawn = np.asarray(maker.picture(last), dtype=float)
     for act in shown.loads[0]:
-        for end in maker._ends(act, last.pose_world_object, maker.now):
+        for end in maker._ends(act, last, last.pose_world_object, maker.now):
             place = maker.seen_at(end)
             assert ((place > 0.0) & (place < SIZE)).all(), act.name
     # A spring's end is below all else: nothing but the spring is dark there.
-    x, y = maker.seen_at(maker._ends(shown.loads[0][3], last.pose_world_object, maker.now)[1]).astype(int)
+    x, y = maker.seen_at(maker._ends(shown.loads[0][3], last, last.pose_world_object, maker.now)[1]).astype(int)
     assert drawn[y - 6 : y + 1, x - 3 : x + 4].min() < 100.0
     assert len(figure_bytes(event_figure(fastened), ".png")) > 10_000
 

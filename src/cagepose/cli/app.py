@@ -33,16 +33,19 @@ BROKEN_PIPE = 141  # 128 + SIGPIPE
 STANDARD_INPUT = "/dev/stdin"
 """Its name where there are such files, and in messages elsewhere, too."""
 
-PURPOSE = "Where a loosely held part comes to rest in its cage of points, through which contacts, and why."
+PURPOSE = "How much play a loosely held part has, where it comes to rest, through which contacts, and why."
 COMMANDS = {
-    "run": ("cagepose.cli.run_command:run_command", "Run a scene: events, final pose, verdict."),
+    "run": (
+        "cagepose.cli.run_command:run_command",
+        "Where the part comes to rest: events, contact forces, final pose, verdict.",
+    ),
     "compare": (
         "cagepose.cli.compare_command:compare_command",
-        "Run a scene by both methods: final poses, verdicts, where they part.",
+        "Run a scene by mechanics and by the paper's rules: where do the two part?",
     ),
     "play": (
         "cagepose.cli.play_command:play_command",
-        "How far the object can move in its cage, and whether it can get out.",
+        "How loose the part is: how far it goes each way, what limits it, can it get out.",
     ),
     "insertion": (
         "cagepose.cli.insertion_command:insertion_command",
@@ -59,7 +62,7 @@ COMMANDS = {
     ),
     "study": (
         "cagepose.cli.study_command:study_command",
-        "Run a scene many times with numbers that vary: yield, tolerances, what matters.",
+        "Run a scene many times with numbers that vary: yield, tolerances, which number matters.",
     ),
     "design": (
         "cagepose.cli.design_command:design_command",
@@ -75,7 +78,7 @@ COMMANDS = {
     ),
     "import": (
         "cagepose.cli.import_command:import_command",
-        "Write the scene that MJCF, URDF, STEP, STL, OBJ, PLY or GLB files describe.",
+        "Make a scene of MJCF, URDF, STEP, STL, OBJ, PLY or GLB files, or join files of single parts.",
     ),
     "crosscheck": (
         "cagepose.cli.crosscheck_command:crosscheck_command",
@@ -84,7 +87,7 @@ COMMANDS = {
     "schema": ("cagepose.cli.schema_command:schema_command", "Print the JSON Schema of scene files, for editors."),
     "init": (
         "cagepose.cli.init_command:init_command",
-        "Write a commented scene to start from; with --holes a pin in a round hole.",
+        "Write a commented scene to start from: a plate in a fixture, or with --holes a pin in a hole.",
     ),
 }
 

@@ -11,7 +11,7 @@ from rich.text import Text
 from cagepose.cli.console import fits, print_all, screen_width
 from cagepose.cli.styles import STYLES, plain_table
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.model.wording import short
+from cagepose.model.wording import number_of, short
 from cagepose.studies.comparison import Comparison, Variant
 from cagepose.studies.ending import run_kind
 
@@ -41,7 +41,7 @@ def _list(rows: Sequence[Sequence[Text]], unit: LengthUnit) -> Table:
     """Return the rows as three lines each, for a screen that is too narrow for the table."""
     table = Table.grid(padding=(0, 2))
     for label, verdict, proof, center, angles, n_events in rows:
-        ended = Text.assemble(verdict, f" (proof: {proof}), {n_events} events")
+        ended = Text.assemble(verdict, f" (proof: {proof}), {number_of(int(n_events.plain), 'event')}")
         table.add_row(label, ended)
         table.add_row("  centre of gravity", Text(f"({center}) {unit}"))
         table.add_row("  yaw, pitch, roll", Text(f"({angles}) deg"))

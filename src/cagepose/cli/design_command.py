@@ -34,12 +34,13 @@ def design_command(
         return 2
     from cagepose.errors import printable
     from cagepose.files.write import json_text
+    from cagepose.model.wording import duration, number_of
     from cagepose.sampling.design import Design
 
     began = time.perf_counter()
     results = Design.load(file).run(workers=workers or os.cpu_count() or 1, progress=_tell)
     n_values, seconds = len(results.trade_off.points), time.perf_counter() - began
-    told = f"cagepose: {n_values} values, {results.n_runs:,} runs in {seconds:.1f} s"
+    told = f"cagepose: {number_of(n_values, 'value')}, {number_of(results.n_runs, 'run')} in {duration(seconds)}"
     sys.stderr.write(f"\r{told:60}\n" if sys.stderr.isatty() else f"{told}\n")
     if json:
         sys.stdout.write(json_text(results.document()))

@@ -12,6 +12,7 @@ from cagepose.cli.console import fits
 from cagepose.cli.styles import plain_table
 from cagepose.cli.tolerances import SIDEWAYS_OF_NORMAL
 from cagepose.files.words import LengthWords, names_of
+from cagepose.model.wording import number_of
 from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.run import Contact, PhaseRun, Run
 
@@ -43,7 +44,9 @@ def force_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -
         parts += [table, ""]
     n_all = len({(contact.point, contact.box) for phase in phases for contact in phase.contacts if _bears(contact)})
     if n_all > MOST_ROWS and not is_verbose:
-        shares.append(Text(f"not shown: {n_all - MOST_ROWS} contacts that bear less (--verbose shows them)"))
+        shares.append(
+            Text(f"not shown: {number_of(n_all - MOST_ROWS, 'contact')} that bear less (--verbose shows them)")
+        )
     return [*parts, *shares, ""] if shares else parts
 
 

@@ -9,6 +9,7 @@ from rich.text import Text
 
 from cagepose.cli.console import print_all
 from cagepose.cli.styles import plain_table
+from cagepose.model.wording import number_of
 
 if TYPE_CHECKING:
     from cagepose.exchange.imported_part import ImportedPart
@@ -29,6 +30,6 @@ def print_summary(parts: Sequence[ImportedPart], weight: Weight | None) -> None:
     for row in summary_rows(parts[:MOST_ROWS]):
         table.add_row(*(Text(printable(cell)) for cell in row))
     more = len(parts) - MOST_ROWS
-    below = [f"and {more} parts more"] if more > 0 else []
+    below = [f"and {number_of(more, 'part')} more"] if more > 0 else []
     below += [weight_words(weight)] if weight else []
     print_all("", table, "", *(Text(line) for line in below), *([""] if below else []))

@@ -65,9 +65,13 @@ def play_command(
         sys.stderr.write("\n".join(problems) + "\n")
         return 2
 
+    from cagepose.files.progress import tell
     from cagepose.studies.play import play
     from cagepose.studies.play_rest import play_rests
 
+    is_pushed = seated or scene_file.scene.has_other_shapes
+    if is_pushed:
+        tell("pushing the part each way until it stops (seconds; round shapes take longest)")
     try:
         found = play(
             scene_file.scene,
@@ -79,7 +83,7 @@ def play_command(
     except SceneError as error:
         sys.stderr.write(f"--{error}\n")
         return 2
-    if found.verdict in ("not certified", "escapes") and sys.stderr.isatty():
+    if (is_pushed or found.verdict in ("not certified", "escapes")) and sys.stderr.isatty():
         sys.stderr.write(ERASE_LINE)
     rests = () if seated or scene_file.scene.has_other_shapes else play_rests(scene_file.scene)
     if json:

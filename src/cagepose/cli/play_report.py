@@ -14,8 +14,7 @@ from cagepose.cli.tolerances import END_AT_START
 from cagepose.files.play_document import LENGTHS
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.files.words import LengthWords, line_of
-from cagepose.model.checks import FloatArray
-from cagepose.model.wording import short
+from cagepose.model.wording import duration, short
 from cagepose.studies.cage_verdict import CageVerdict, PathStep
 from cagepose.studies.play_rest import PlayRest
 from cagepose.studies.play_result import Play, PlayEnd
@@ -45,8 +44,8 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     """Print to standard output, lengths in ``unit``, angles in degrees."""
     rows = [(name, name in LENGTHS, ends.low, ends.high) for name, ends in play.freedoms.items()]
     rows += [(_point_name(place, play), True, point.low, point.high) for place, point in enumerate(play.points)]
-    width = screen_width()
-    tables = [_ranges(rows, unit, digits) for digits in DIGITS_OF_RANGES]
+    width, words = screen_width(), LengthWords(unit, play.scene.size_m)
+    tables = [_ranges(rows, words, digits) for digits in DIGITS_OF_RANGES]
     table = next((table for table in tables if fits(table, width)), tables[-1])
     why = plain_table("end", "limited by", f"back per {unit} closed", f"on per {unit} opened", "halved if closed by")
     for name, is_length, low, high in rows:
@@ -58,24 +57,24 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
         print_all(Text(f"{play.scene.name}: play where {play.seated} seats it, in the cage's frame"), "", Text(SEATED))
     else:
         print_all(Text(f"{play.scene.name}: play from the start pose, in the cage's frame"), "")
-        _print_cage(play.cage, LengthWords(unit, play.scene.size_m), unit)
+        _print_cage(play.cage, words)
     is_proven = any(end.certified is not None for _, _, low, high in rows for end in (low, high))
-    print_all("", table, "", *_legend(play, unit), Text(MEANING if is_proven else MEANING_WITHOUT_PROOF), "")
+    print_all("", table, "", *_legend(play, words), Text(MEANING if is_proven else MEANING_WITHOUT_PROOF), "")
     if why.row_count:
         print_all(why, "", Text(HALVED), "")
     for rest in rests:
-        print_all(_rest(rest, unit))
+        print_all(_rest(rest, words))
     asked = {rest.phase for rest in rests}
     for load in play.scene.loads if rests else ():
         if load.name not in asked:
             print_all(
                 Text(f"{load.name} has more than a weight and one force: where it leaves the object says cagepose run")
             )
-    proven = f", certificate {play.certificate_s * 1e3:.3g} ms" if play.certificate_s else ""
-    print_all(Text(f"analysis {play.analysis_s * 1e3:.3g} ms{proven}"))
+    proven = f", certificate {duration(play.certificate_s)}" if play.certificate_s else ""
+    print_all(Text(f"analysis {duration(play.analysis_s)}{proven}"))
 
 
-def _print_cage(cage: CageVerdict, words: LengthWords, unit: LengthUnit) -> None:
+def _print_cage(cage: CageVerdict, words: LengthWords) -> None:
     verdict = Text("cage: ")
     verdict.append(cage.verdict, style=STYLES[cage.verdict])
     print_all(verdict.append(f" ({cage.reason})"))
@@ -84,12 +83,12 @@ def _print_cage(cage: CageVerdict, words: LengthWords, unit: LengthUnit) -> None
     if cage.free_directions:
         print_all(Text(f"free directions: {' '.join(cage.free_directions)}"))
     if cage.leaves_at is not None:
-        print_all(Text(f"it leaves its face with the object's origin at ({_triple(cage.leaves_at.position_m, unit)})"))
+        print_all(Text(f"it leaves its face with the object's origin at ({words.lengths(cage.leaves_at.position_m)})"))
     if cage.path is not None:
         print_all(Text(f"way out: {_way_out(cage.path, words)}"))
 
 
-def _ranges(rows: Sequence[tuple[str, bool, PlayEnd, PlayEnd]], unit: LengthUnit, digits: int) -> Table:
+def _ranges(rows: Sequence[tuple[str, bool, PlayEnd, PlayEnd]], words: LengthWords, digits: int) -> Table:
     """Return the table of ranges: names, whether they are lengths, and both ends."""
     ends = [end for _, _, low, high in rows for end in (low, high)]
     has_linear = any(end.linear is not None for end in ends) or all(end.is_open for end in ends)
@@ -99,26 +98,26 @@ def _ranges(rows: Sequence[tuple[str, bool, PlayEnd, PlayEnd]], unit: LengthUnit
     for name, is_length, low, high in rows:
 
         def written(value: float | None, is_length: bool = is_length) -> str:
-            return _value(value, is_length, unit, digits)
+            return _value(value, is_length, words, digits)
 
         is_certified = low.certified is not None and high.certified is not None
         ranges = {
             "linear": f"{written(low.linear)} to {written(high.linear)}",
-            "exact": f"{_exact(low, is_length, unit, digits)} to {_exact(high, is_length, unit, digits)}",
+            "exact": f"{_exact(low, is_length, words, digits)} to {_exact(high, is_length, words, digits)}",
             "certified within": f"{written(low.certified)} to {written(high.certified)}" if is_certified else "-",
         }
-        cells = (name, str(unit) if is_length else "deg", *(ranges[kind] for kind in kinds))
+        cells = (name, str(words.unit) if is_length else "deg", *(ranges[kind] for kind in kinds))
         table.add_row(*(Text(cell) for cell in cells))
     return table
 
 
-def _legend(play: Play, unit: LengthUnit) -> list[Text]:
+def _legend(play: Play, words: LengthWords) -> list[Text]:
     """Say which points are meant."""
     places = {_place_of(place, play): point.at_object for place, point in enumerate(play.points)}
-    return [Text(f"{name}: ({_triple(at, unit)}) {unit} in the object's frame") for name, at in places.items()]
+    return [Text(f"{name}: ({words.lengths(at)}) {words.unit} in the object's frame") for name, at in places.items()]
 
 
-def _rest(rest: PlayRest, unit: LengthUnit) -> Text:
+def _rest(rest: PlayRest, words: LengthWords) -> Text:
     """One line: where the load leaves the object, by which points, and what it leaves open."""
     line = Text(f"{rest.phase} ")
     pose, forces = rest.pose_world_object, rest.exact_forces
@@ -130,16 +129,12 @@ def _rest(rest: PlayRest, unit: LengthUnit) -> Text:
             return line.append("presses it out: nothing stops the load")
         line.append("finds no rest nearby", style="yellow").append("; to first order it would press it ")
     angles = ", ".join(short(math.degrees(angle), 4, 1e-9) for angle in pose.euler_zyx)
-    line.append(f"to ({_triple(pose.position_m, unit)}), yaw, pitch, roll ({angles}) deg, without friction;")
+    line.append(f"to ({words.lengths(pose.position_m)}), yaw, pitch, roll ({angles}) deg, without friction;")
     amounts = ", ".join(f"{force.point} {force.force_n:.4g}" for force in forces)
     line.append(f" forces{' [N]' if rest.in_newtons else ''}: {amounts}")
     if rest.undetermined:
         line.append(f"; to first order free along {' '.join(freedom.name for freedom in rest.undetermined)}")
     return line
-
-
-def _triple(lengths_m: FloatArray, unit: LengthUnit) -> str:
-    return ", ".join(short(value, 6, 1e-12) for value in from_metres(lengths_m, unit).tolist())
 
 
 def _place_of(place: int, play: Play) -> str:
@@ -155,15 +150,16 @@ def _point_name(place: int, play: Play) -> str:
     return f"{_place_of(place, play)} along {along}"
 
 
-def _value(value: float | None, is_length: bool, unit: LengthUnit, digits: int) -> str:
+def _value(value: float | None, is_length: bool, words: LengthWords, digits: int) -> str:
     if value is None:
         return "no end"
-    shown = float(from_metres(value, unit)) if is_length else math.degrees(value)
-    return short(shown, digits, 1e-12)
+    if is_length:
+        return short(float(from_metres(value, words.unit)), digits, words.noise)
+    return short(math.degrees(value), digits, 1e-10)
 
 
-def _exact(end: PlayEnd, is_length: bool, unit: LengthUnit, digits: int) -> str:
-    value = _value(end.reached, is_length, unit, digits)
+def _exact(end: PlayEnd, is_length: bool, words: LengthWords, digits: int) -> str:
+    value = _value(end.reached, is_length, words, digits)
     return f"past {value}" if end.status == "not converged" else f"{value}*" if end.status == "proven" else value
 
 

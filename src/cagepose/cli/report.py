@@ -19,11 +19,11 @@ from cagepose.cli.tolerances import LEAST_GAP_WORK
 from cagepose.errors import printable
 from cagepose.files.units import LengthUnit
 from cagepose.files.words import LengthWords
-from cagepose.model.wording import components, short
+from cagepose.model.wording import components, duration, short
 from cagepose.runs.cases import greatest_friction
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, STOPPED, PhaseRun, Run
-from cagepose.studies.ending import run_kind
+from cagepose.studies.ending import run_kind, turned_far
 from cagepose.studies.margin import Margin
 
 POSES = {
@@ -89,12 +89,11 @@ class _Writer:
         self.margin: list[tuple[str, str]] = []
 
     def title(self) -> Text:
-        solve_ms = self.run.solve_s * 1000.0
         title = Text(f"{self.run.scene.name}: ")
         title.append(self.run.verdict, style=STYLES[run_kind(self.run)])
         if self.run.is_contradicted:
             title.append(f" {CONTRADICTED}")
-        return title.append(f"  ({self.run.method}, {solve_ms:.3g} ms)")
+        return title.append(f"  ({self.run.method}, {duration(self.run.solve_s)})")
 
     def summary(self) -> Table:
         run = self.run
@@ -103,6 +102,7 @@ class _Writer:
             *(line for phase in run.phases[:-1] if self.is_verbose for line in self._end(phase)),
             ("pose", POSES.get(run.verdict, "")),
             *self._end(run.phases[-1]),
+            ("turned", "; ".join(turned_far(run))),
             *drive_lines(run, self.words),
             ("verdict", _verdicts(run)),
             *((f"proof of {phase.name}", _proof(phase)) for phase in run.phases[:-1] if self.is_verbose),

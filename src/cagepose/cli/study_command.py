@@ -80,7 +80,9 @@ def study_command(
 
     print_study(numbers)
     if written:
-        sys.stdout.write(printable(f"wrote {written[0]} and {len(written) - 1} files beside it") + "\n")
+        from cagepose.model.wording import number_of
+
+        sys.stdout.write(printable(f"wrote {written[0]} and {number_of(len(written) - 1, 'file')} beside it") + "\n")
     return 0
 
 
@@ -113,13 +115,14 @@ def _csv_problem(file: str, csv: str | None, json: bool) -> str | None:
 
 def _write_csv(results: StudyResults, path: str) -> int:
     from cagepose.errors import printable
+    from cagepose.model.wording import number_of
 
     try:
         results.to_csv(path)
     except OSError as error:
         sys.stderr.write(refusal(f"--csv {path}", error) + "\n")
         return 2
-    sys.stdout.write(printable(f"wrote {path}: {len(results):,} rows") + "\n")
+    sys.stdout.write(printable(f"wrote {path}: {number_of(len(results), 'row')}") + "\n")
     return 0
 
 
@@ -137,6 +140,8 @@ def _reported(results: StudyResults, workers: int, *, is_shown: bool) -> tuple[d
 
 def _progress() -> Progress:
     """Return what tells on standard error how far a study is and how long it will take: one line on a terminal."""
+    from cagepose.model.wording import duration, number_of
+
     began, told, skipped = time.perf_counter(), 0.0, 0
     on_screen = sys.stderr.isatty()
 
@@ -150,23 +155,11 @@ def _progress() -> Progress:
             return
         told = now
         text = (
-            f"cagepose: {done:,} of {n_runs:,} runs, {_duration(left)} left"
+            f"cagepose: {done:,} of {number_of(n_runs, 'run')}, {duration(left)} left"
             if done < n_runs
-            else (f"cagepose: {n_runs:,} runs in {_duration(elapsed)}")
+            else (f"cagepose: {number_of(n_runs, 'run')} in {duration(elapsed)}")
         )
         sys.stderr.write(f"\r{text:60}" + ("\n" if done == n_runs else "") if on_screen else f"{text}\n")
         sys.stderr.flush()
 
     return tell
-
-
-def _duration(seconds: float) -> str:
-    """As people say it.
-
-    >>> _duration(4.2), _duration(200.0), _duration(9000.0)
-    ('4.2 s', '3 min 20 s', '2 h 30 min')
-    """
-    if seconds < 60.0:
-        return f"{seconds:.1f} s"
-    minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes} min {rest} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"

@@ -8,7 +8,7 @@ from rich.table import Table
 
 from cagepose.cli.console import print_all
 from cagepose.cli.styles import plain_table
-from cagepose.model.wording import number_or_dash, percent, range_or_dash
+from cagepose.model.wording import number_of, number_or_dash, percent, range_or_dash
 
 MOST_ROWS = 8
 """So many of the numbers that matter are printed; the page shows more."""
@@ -18,7 +18,7 @@ def print_study(found: dict[str, Any]) -> None:
     """Print yield, tolerances, what matters and the permitted box; ``found`` is what report.json holds."""
     share = found["yield"]
     parts: list[Any] = [
-        f"{found['scene']}: {found['runs']:,} runs ({found['method']})",
+        f"{found['scene']}: {number_of(found['runs'], 'run')} ({found['method']})",
         f"yield {percent(share['share'])}, between {percent(share['low'])} and {percent(share['high'])} (95 %)",
         *_warnings(found),
         "",

@@ -52,9 +52,11 @@ class Built(NamedTuple):
     notes: tuple[str, ...]
 
 
-def build_scene(model: SceneModel, table: PointsTable | None, folder: Path = CURRENT) -> Built:
+def build_scene(
+    model: SceneModel, table: PointsTable | None, folder: Path = CURRENT, *, is_whole: bool = True
+) -> Built:
     """Make the scene that ``model`` describes; ``table`` holds the points if they stand in a file of their own, and
-    ``folder`` its meshes.
+    ``folder`` its meshes. Not ``is_whole``: parts are missing, so that only each part that is there is checked.
 
     Raises
     ------
@@ -68,7 +70,7 @@ def build_scene(model: SceneModel, table: PointsTable | None, folder: Path = CUR
     tolerances = builder.make(("tolerances",), builder.tolerances, model)
     friction_of = builder.friction_of(model, held, cage) if held is not None and cage is not None else {}
     builder.check_adjustable(model)
-    if builder.problems or held is None or cage is None or tolerances is None:
+    if builder.problems or held is None or cage is None or tolerances is None or not is_whole:
         raise SceneError(builder.problems)
     scene = Scene(
         held,
@@ -127,8 +129,7 @@ class _Builder:
         )
 
     def box(self, model: BoxModel) -> Box:
-        pose = Pose(to_metres(model.position, self.unit), euler_zyx=_radians(model.euler_zyx_deg))
-        return Box(to_metres(model.size, self.unit), pose, model.name)
+        return Box(to_metres(model.size, self.unit), self.shape_pose(model), model.name)
 
     def shapes(self, body: Body, models: list[ShapeModel]) -> list[Shape | None]:
         """Return the shapes of a body, which stands at a path. Of a mesh that is several, all but the first stand last,
@@ -227,7 +228,7 @@ class _Builder:
             raise SceneError([Problem((), "says its unit itself, as STEP files do; remove the key unit")])
         return step_file.read_step_shapes(path, model.solid, name, fillets=model.fillets)
 
-    def shape_pose(self, model: ShapeModel) -> Pose:
+    def shape_pose(self, model: BoxModel | ShapeModel) -> Pose:
         return Pose(to_metres(model.position or [0.0, 0.0, 0.0], self.unit), euler_zyx=_radians(model.euler_zyx_deg))
 
     def length(self, length: float) -> float:

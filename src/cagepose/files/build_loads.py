@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 from cagepose.errors import Key, Problem, SceneError
 from cagepose.files.schema import ForceModel, LoadModel, MomentModel, SpringModel
@@ -12,6 +14,9 @@ from cagepose.model.drive import Drive
 from cagepose.model.load import Force, Load, Moment
 from cagepose.model.press import Press
 from cagepose.model.spring import Spring
+
+Given = TypeVar("Given")
+Noun = TypeVar("Noun")
 
 KEYS_OF_TURN: dict[Key, tuple[Key, ...]] = {
     "about": ("turn", "about"),
@@ -29,41 +34,56 @@ def load_of(model: LoadModel, unit: LengthUnit) -> Load:
     SceneError
         All that is wrong with it, with paths from the load.
     """
-    problems: list[Problem] = []
-    springs = list[Spring]()
-    for number, spring in enumerate(model.springs or []):
-        try:
-            springs.append(_spring(spring, unit))
-        except SceneError as error:
-            problems += error.under("springs", number).problems
-    drive = dict[str, list[Drive]]()
-    for name, legs in (model.drive or {}).items():
-        drive[name] = []
-        for place, leg in _placed(legs):
-            try:
-                drive[name].append(_leg(leg, unit))
-            except SceneError as error:
-                problems += error.under("drive", name, *place).problems
-    if problems:
-        raise SceneError(problems)
+    parts = _Parts(unit)
+    force = None if model.force is None else parts.make(("force",), _force, model.force)
+    forces = parts.listed("forces", _force, model.forces or [])
+    moments = parts.listed("moments", _moment, model.moments or [])
+    springs = parts.listed("springs", _spring, model.springs or [])
+    drive = {
+        name: [made for place, leg in _placed(legs) if (made := parts.make(("drive", name, *place), _leg, leg))]
+        for name, legs in (model.drive or {}).items()
+    }
+    presses = {name: parts.make(("press", name), _press, press) for name, press in (model.press or {}).items()}
+    if parts.problems:
+        raise SceneError(parts.problems)
     load = Load(
         model.name,
         gravity=model.gravity,
-        force=None if model.force is None else _force(model.force, unit),
-        forces=[_force(force, unit) for force in model.forces or []],
-        moments=[_moment(moment, unit) for moment in model.moments or []],
+        force=force,
+        forces=forces,
+        moments=moments,
         springs=springs,
         drive=drive,
         stop_at=None if model.stop_at is None else _limit(model.stop_at, unit),
-        press={name: _press(press, unit) for name, press in (model.press or {}).items()},
+        press={name: press for name, press in presses.items() if press},
     )
     if model.stop_at is not None:
         _check_kind_of_limit(model.stop_at, load)
     return load
 
 
+class _Parts:
+    """Makes the parts of a load, and collects what is wrong with each of them."""
+
+    def __init__(self, unit: LengthUnit) -> None:
+        self.unit = unit
+        self.problems: list[Problem] = []
+
+    def make(self, place: tuple[Key, ...], maker: Callable[[Given, LengthUnit], Noun], model: Given) -> Noun | None:
+        try:
+            return maker(model, self.unit)
+        except SceneError as error:
+            self.problems += error.under(*place).problems
+            return None
+
+    def listed(self, key: str, maker: Callable[[Given, LengthUnit], Noun], models: Sequence[Given]) -> list[Noun]:
+        made = [self.make((key, number), maker, model) for number, model in enumerate(models)]
+        return [one for one in made if one is not None]
+
+
 def _force(model: ForceModel, unit: LengthUnit) -> Force:
-    return Force(model.direction, to_metres(model.at, unit), model.magnitude, follows=bool(model.follows))
+    at, at_world = (None if point is None else to_metres(point, unit) for point in (model.at, model.at_world))
+    return Force(model.direction, at, model.magnitude, at_world_m=at_world, follows=bool(model.follows))
 
 
 def _moment(model: MomentModel, unit: LengthUnit) -> Moment:

@@ -72,6 +72,8 @@ def meant_by_value(path: Path, value: object) -> str | None:
         at = ", at: [0, 0, 0]" if key == "force" else ""
         length = math.hypot(*value) if isinstance(value, list) else 0.0
         return f"write {key}: {{direction: {json.dumps(value)}{at}, magnitude: {length:.6g}}}"
+    if path[-2:] == ("hole", "in") and isinstance(value, str):
+        return f"write in: [{value}]"
     if key == "pose" and _is_vector(value):
         return f"write pose: {{position: {json.dumps(value)}}}"
     if key == "size" and _is_number(value):

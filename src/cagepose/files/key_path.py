@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from cagepose.errors import Key, key_path
+from cagepose.model.wording import number_of
 
 Path = tuple[Key, ...]
 
@@ -94,7 +95,7 @@ def _check_step(here: object, key: Key, held: str) -> None:
         if not isinstance(key, int):
             raise ValueError(f"{held} is a list, which has no key {key!r}; {allowed}")
         if key >= len(here):
-            raise ValueError(f"{held} holds {len(here)} values, so it has no index {key}; {allowed}")
+            raise ValueError(f"{held} holds {number_of(len(here), 'value')}, so it has no index {key}; {allowed}")
     elif here is None:
         raise ValueError(f"{held} is missing, so it has no index {key}; write it into the scene, or set it as a whole")
     elif not isinstance(here, dict):

@@ -17,6 +17,7 @@ from cagepose.files.key_path import Path, value_at
 from cagepose.files.schema import SceneModel
 from cagepose.files.schema_base import json_schema
 from cagepose.files.schema_shapes import KINDS
+from cagepose.model.wording import number_of
 
 _WANTED = {
     "float_type": "a number",
@@ -52,7 +53,7 @@ def schema_findings(error: ValidationError, data: object, model: type[BaseModel]
     """Turn all that pydantic found in ``data``, which was to be a ``model``, into problems."""
     findings = []
     for details in error.errors(include_url=False):
-        path = _file_path(details["loc"])
+        path = file_path(details["loc"])
         message = _message(details, path, data, model)
         findings.append(Finding(Problem(path, message), details["type"] == "extra_forbidden"))
     return findings
@@ -81,7 +82,7 @@ def shown(value: object) -> str:
             return f"of type {type(value).__name__}"
 
 
-def _file_path(location: tuple[Key, ...]) -> Path:
+def file_path(location: tuple[Key, ...]) -> Path:
     """Pydantic's location without what it adds: the form of points and friction, and a mark for keys."""
     at = 3 if location[:2] == ("cage", "bodies") else 1  # what a body has, a cage has
     if location[:1] == ("cage",) and location[at : at + 1] == ("points",):
@@ -126,7 +127,8 @@ def _message(details: ErrorDetails, path: Path, data: object, model: type[BaseMo
         return _length_message(found, context)
     if kind in ("string_too_short", "string_too_long"):
         limit = context.get("min_length", context.get("max_length"))
-        return f"has {len(str(found))} characters; give {'at least' if 'min_length' in context else 'at most'} {limit}"
+        least_or_most = "at least" if "min_length" in context else "at most"
+        return f"has {number_of(len(str(found)), 'character')}; give {least_or_most} {limit}"
     return f"is {shown(found)}: {details['msg'].lower()}"
 
 
@@ -134,8 +136,7 @@ def _length_message(found: Any, context: dict[str, Any]) -> str:
     n_found, least, most = len(found), context.get("min_length"), context.get("max_length")
     if n_found == 0:
         return "is empty; give at least one" if least == 1 else f"is empty; give {least} values"
-    noun = "value" if n_found == 1 else "values"
-    return f"has {n_found} {noun}; give {most if least is None else least}"
+    return f"has {number_of(n_found, 'value')}; give {most if least is None else least}"
 
 
 def _choice(found: object, expected: str) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 from cagepose.errors import FileProblem, SceneFileError
 from cagepose.files.read import read_text
 from cagepose.files.schema_base import LARGEST_NUMBER
+from cagepose.model.wording import number_of
 
 POINTS_KEY = ("cage", "points", "file")
 """Where a scene names its points file."""
@@ -66,9 +67,9 @@ def read_points(path: Path, source: str) -> PointsTable:
 
 def _row_message(cells: list[str], width: int) -> str | None:
     if len(cells) not in (3, 4):
-        return f"has {len(cells)} values; give x,y,z or name,x,y,z"
+        return f"has {number_of(len(cells), 'value')}; give x,y,z or name,x,y,z"
     if len(cells) != width:
-        return f"has {len(cells)} values, the first row {width}; give all points a name or none"
+        return f"has {number_of(len(cells), 'value')}, the first row {width}; give all points a name or none"
     if width == 4 and not (cells[0] and cells[0].isprintable() and len(cells[0]) <= 100):
         return f"has the name {cells[0][:40]!r}; give a name of 1 to 100 visible characters"
     for cell in cells[-3:]:

@@ -37,6 +37,7 @@ KEYS = {
     "through_world": "through_m",
     "place_world": "place_m",
     "places_world": "places_m",
+    "at_world_m": "at_world_m",
     "names": "point_names",
     "points_cage": "points_m",
     "points_body": "points_m",
@@ -105,7 +106,8 @@ class _Field(NamedTuple):
 @cache
 def _fields(kind: type) -> list[_Field]:
     kinds = get_type_hints(kind, include_extras=True)
-    framed = {FRAME.sub("", name): name for name in kinds}
+    parameters = signature(kind).parameters
+    framed = {FRAME.sub("", name): name for name in kinds if name not in parameters}
     attributes = {UNIT.sub("", key): name for key, name in framed.items()} | framed | {name: name for name in kinds}
     return [
         _Field(
@@ -116,7 +118,7 @@ def _fields(kind: type) -> list[_Field]:
             kind=kinds[attributes[argument]],
             is_required=parameter.default is Parameter.empty,
         )
-        for argument, parameter in signature(kind).parameters.items()
+        for argument, parameter in parameters.items()
         if argument in attributes
     ]
 

@@ -232,7 +232,10 @@ class SceneWriter:
         )
 
     def force(self, force: Force) -> dict[str, Any]:
-        found = {"direction": _plain_list(force.direction), "at": self.lengths(force.at_object_m)}
+        found: dict[str, Any] = {"direction": _plain_list(force.direction)}
+        for key, point in (("at", force.at_object_m), ("at_world", force.at_world_m)):
+            if point is not None:
+                found[key] = self.lengths(point)
         return found | _given({"magnitude": force.magnitude_n, "follows": force.follows or None})
 
     def moment(self, moment: Moment) -> dict[str, Any]:

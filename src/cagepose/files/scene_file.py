@@ -22,6 +22,7 @@ from cagepose.files.points_file import POINTS_KEY, PointsTable, read_points
 from cagepose.files.read import read_text, starts_as_run
 from cagepose.files.schema import SceneModel
 from cagepose.files.schema_cage import PointsFileModel
+from cagepose.files.sound_parts import problems_beside
 from cagepose.files.units import LengthUnit
 from cagepose.files.yaml_source import MAX_DEPTH, YamlSource, parse_yaml
 from cagepose.model.scene import Scene
@@ -230,17 +231,23 @@ class _Attempt:
                 elif not isinstance(value_at(data, finding.problem.path), str):  # else it came to nothing
                     problem = Problem(finding.problem.path, f"{text!r} {finding.problem.message}")
                     self.findings.append(Finding(problem, False))
+            self._look_beside([finding.problem for finding in self.findings], data, folder)
             return
         self.findings += [Finding(problem, False) for problem in _adjustable_problems(model, data)]
         if self.table is None and isinstance(model.cage.points, PointsFileModel):
+            self._look_beside([Problem(POINTS_KEY, "")], data, folder)
             return
         try:
             scene, notes = build_scene(model, self.table, folder)
         except SceneError as error:
             self.findings += [Finding(problem, False) for problem in error.problems]
+            self._look_beside(error.problems, data, folder)
             return
         if not self.findings:
             self.scene_file = SceneFile(scene, model.units.length if model.units else "mm", notes)
+
+    def _look_beside(self, told: Sequence[Problem], data: object, folder: Path) -> None:
+        self.findings += [Finding(problem, False) for problem in problems_beside(data, told, self.table, folder)]
 
     def _read_table(self, name: object, folder: Path) -> PointsTable | None:
         if not isinstance(name, str) or not name:

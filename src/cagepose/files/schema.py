@@ -13,6 +13,7 @@ from pydantic import (
     ConfigDict,
     Field,
     WithJsonSchema,
+    model_validator,
 )
 
 from cagepose.files.parameters import parameter_name_message
@@ -66,7 +67,9 @@ class BoxModel(Mapping):
     """One rectangular block of the object."""
 
     size: Size = Field(description="Full edge lengths [x, y, z].", examples=[[10, 20, 30]])
-    position: Vector = Field(description="Centre of the box in the object's frame.", examples=[[0, 0, 0]])
+    position: Vector | None = Field(
+        None, description="Centre of the box in the object's frame; left out: its origin.", examples=[[0, 0, 0]]
+    )
     euler_zyx_deg: Vector | None = Field(
         None, description="How the box is turned in the object: yaw, pitch, roll in degrees.", examples=[[45, 0, 0]]
     )
@@ -104,13 +107,22 @@ class ObjectModel(Mapping):
 
 
 class ForceModel(Mapping):
-    """A push at one point of the object."""
+    """A push at one point, which rides on the object or stays in the world."""
+
+    model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": ["at"]}, {"required": ["at_world"]}]})
 
     direction: Direction = Field(
         description="Where it pushes to, any length: in the world, or in the object's frame where the force follows.",
         examples=[[1, 0, 0]],
     )
-    at: Vector = Field(description="The point it acts at, in the object's frame.", examples=[[0, 0, 0]])
+    at: Vector | None = Field(
+        None, description="The point it acts at, in the object's frame: it rides on the object.", examples=[[0, 0, 0]]
+    )
+    at_world: Vector | None = Field(
+        None,
+        description="Instead of at: a point of the world, where the force stays while the object moves (quasistatic).",
+        examples=[[0, 0, 50]],
+    )
     magnitude: Positive | None = Field(
         None,
         description="Newtons; left out, where nothing but gravity acts beside it: one unit of force.",
@@ -119,6 +131,13 @@ class ForceModel(Mapping):
     follows: bool | None = Field(
         None, description="Whether it turns with the object; left out: its direction stays fixed in the world."
     )
+
+    @model_validator(mode="after")
+    def _one_point(self) -> ForceModel:
+        if (self.at is None) == (self.at_world is None):
+            wrong_ = "has neither at nor at_world" if self.at is None else "has both at and at_world"
+            raise wrong(f"{wrong_}; give one of them: at rides on the object, at_world stays in the world")
+        return self
 
 
 class MomentModel(Mapping):

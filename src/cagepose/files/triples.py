@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from cagepose.errors import Problem, SceneError
 from cagepose.model.checks import FloatArray
+from cagepose.model.wording import number_of
 
 
 def triples(text: str, key: str) -> FloatArray:
@@ -22,7 +23,7 @@ def triples(text: str, key: str) -> FloatArray:
     rows = [row.split() for row in text.split(",")]
     wrong = next((index for index, row in enumerate(rows) if len(row) != 3), None)
     if wrong is not None:
-        found = f"has {len(rows[wrong])} numbers in row {wrong + 1}"
+        found = f"has {number_of(len(rows[wrong]), 'number')} in row {wrong + 1}"
         raise _refused(key, f"{found}; give three, and a comma after each row")
     try:
         return np.array([[float(number) for number in row] for row in rows])

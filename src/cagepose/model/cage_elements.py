@@ -16,6 +16,7 @@ from cagepose.model.hole import Hole, check_holes
 from cagepose.model.naming import check_names, names_of, place_of, placed
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import AnyShape, Shape
+from cagepose.model.wording import number_of
 
 
 class Elements(NamedTuple):
@@ -91,7 +92,9 @@ def elements_of(
     solids = tuple(shape for shape in everything if not isinstance(shape, Hole))
     cut = tuple(shape for shape in everything if isinstance(shape, Hole))
     if len(given) != len(array):
-        problems.add(("names",), f"holds {len(given)} names for {len(array)} points; give one for each")
+        problems.add(
+            ("names",), f"holds {number_of(len(given), 'name')} for {number_of(len(array), 'point')}; give one for each"
+        )
     for name, indices in duplicates(given).items():
         problems.add(("points", name), f"is the name of {len(indices)} points; rename all but one")
     unique = list(dict.fromkeys(given))

@@ -19,6 +19,7 @@ from cagepose.model.checks import (
     unit_vector,
 )
 from cagepose.model.drive import Drive, drives_of
+from cagepose.model.pose import Pose
 from cagepose.model.press import Press, presses_of
 from cagepose.model.spring import Spring
 from cagepose.model.wording import coordinates, counted, few
@@ -26,14 +27,17 @@ from cagepose.model.wording import coordinates, counted, few
 
 @dataclass(frozen=True, init=False, eq=False)
 class Force:
-    """A push at a point of the object.
+    """A push at a point that rides on the object, or at a point of the world.
 
     Attributes
     ----------
     direction
         Unit vector, (3,): in the world, or in the object's frame if the force follows it.
     at_object_m
-        Application point in the object's frame, (3,), metres. It need not lie on the object.
+        Application point in the object's frame, (3,), metres. It need not lie on the object. None: `at_world_m` has it.
+    at_world_m
+        Application point in the world, (3,), metres, where it stays while the object moves on below it. None: it rides
+        on the object.
     magnitude_n
         Newtons; None: one unit of force.
     follows
@@ -41,28 +45,60 @@ class Force:
     """
 
     direction: FloatArray
-    at_object_m: FloatArray
+    at_object_m: FloatArray | None
+    at_world_m: FloatArray | None
     magnitude_n: float | None
     follows: bool
 
     def __init__(
-        self, direction: ArrayLike, at_m: ArrayLike, magnitude_n: float | None = None, *, follows: bool = False
+        self,
+        direction: ArrayLike,
+        at_m: ArrayLike | None = None,
+        magnitude_n: float | None = None,
+        *,
+        at_world_m: ArrayLike | None = None,
+        follows: bool = False,
     ) -> None:
         """
         Raises
         ------
         SceneError
-            A zero direction, a wrong shape, NaN or infinite, or a magnitude that is not above zero.
+            A zero direction, a wrong shape, NaN or infinite, both points or none, a point of the world for a force that
+            follows the object, or a magnitude that is not above zero.
         """
+        if (at_m is None) == (at_world_m is None):
+            wrong = "has neither at nor at_world" if at_m is None else "has both at and at_world"
+            raise SceneError([Problem((), f"{wrong}; give one point: at rides on the object, at_world does not")])
+        if follows and at_world_m is not None:
+            message = "is a point of the world, and the force follows the object; give at, or let it not follow"
+            raise SceneError([Problem(("at_world",), message)])
         _set_field(self, "direction", unit_vector(direction, "direction"))
-        _set_field(self, "at_object_m", finite_array(at_m, (3,), "at"))
+        _set_field(self, "at_object_m", None if at_m is None else finite_array(at_m, (3,), "at"))
+        _set_field(self, "at_world_m", None if at_world_m is None else finite_array(at_world_m, (3,), "at_world"))
         _set_field(self, "magnitude_n", None if magnitude_n is None else _magnitude(magnitude_n))
         _set_field(self, "follows", bool(follows))
+
+    def at_object(self, pose: Pose) -> FloatArray:
+        """Return where it acts while the object is at a pose: a point in the object's frame, (3,), metres."""
+        if self.at_object_m is not None:
+            return self.at_object_m
+        assert self.at_world_m is not None  # it has one of the two
+        return pose.inverse_transform(self.at_world_m)
+
+    @property
+    def has_potential(self) -> bool:
+        """Whether what it does hangs on the poses alone: it keeps its direction and rides on the object."""
+        return self.at_object_m is not None and not self.follows
 
     def __repr__(self) -> str:
         size = "" if self.magnitude_n is None else f" {self.magnitude_n:.6g} N"
         follows = ", follows" if self.follows else ""
-        return f"<Force{size} along {coordinates(self.direction, 4)} at {coordinates(self.at_object_m)} m{follows}>"
+        if self.at_object_m is not None:
+            at = f"at {coordinates(self.at_object_m)} m"
+        else:
+            assert self.at_world_m is not None
+            at = f"at {coordinates(self.at_world_m)} m of the world"
+        return f"<Force{size} along {coordinates(self.direction, 4)} {at}{follows}>"
 
 
 @dataclass(frozen=True, init=False, eq=False)

@@ -52,6 +52,21 @@ def percent(share: float) -> str:
     return f"{100.0 * share:.{digits}f} %"
 
 
+def duration(seconds: float) -> str:
+    """Return how long something took, as people say it.
+
+    >>> duration(0.000251), duration(0.0236), duration(4.24), duration(23.6), duration(200.0), duration(9000.0)
+    ('0.25 ms', '24 ms', '4.2 s', '24 s', '3 min 20 s', '2 h 30 min')
+    """
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes >= 60:
+        return f"{minutes // 60} h {minutes % 60} min"
+    if minutes >= 1:
+        return f"{minutes} min {rest} s"
+    amount, unit = (seconds, "s") if seconds >= 0.9995 else (1000.0 * seconds, "ms")
+    return f"{amount:.0f} {unit}" if amount >= 99.5 else f"{amount:.2g} {unit}"
+
+
 def coordinates(values: FloatArray, digits: int = 6) -> str:
     """Return numbers in round brackets.
 
@@ -60,6 +75,15 @@ def coordinates(values: FloatArray, digits: int = 6) -> str:
     """
     noise = SHOWN_AS_ZERO * float(np.abs(values).max(initial=0.0)) or SHOWN_AS_ZERO
     return f"({', '.join(short(value, digits, noise) for value in values.tolist())})"
+
+
+def number_of(count: int, one: str, many: str | None = None) -> str:
+    """Return how many there are of what; its plural is that of most words, if none is given.
+
+    >>> number_of(1, "contact"), number_of(12_000, "run"), number_of(2, "vertex", "vertices")
+    ('1 contact', '12,000 runs', '2 vertices')
+    """
+    return f"{count:,} {one if count == 1 else many or f'{one}s'}"
 
 
 def counted(*numbers: tuple[int, str, str]) -> str:

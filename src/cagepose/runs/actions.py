@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -11,6 +12,7 @@ from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.contact.loads import (
     DEAD_FORCE,
     DEAD_MOMENT,
+    FIXED_FORCE,
     FOLLOWING_FORCE,
     FOLLOWING_MOMENT,
     SPRING,
@@ -20,7 +22,7 @@ from cagepose.kernels.contact.loads import (
 )
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.geometry import cage_bodies
-from cagepose.model.load import Load
+from cagepose.model.load import Force, Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.spring import Spring
@@ -54,8 +56,12 @@ def _actions_of_phase(scene: Scene, load: Load, displaced: FloatArray | None = N
     found = np.zeros(1 + len(pushes) + len(load.moments) + len(load.springs), dtype_of(Action))
     found["vector"][0] = weighed.gravity
     for index, push in enumerate(pushes, start=1):
-        found["kind"][index] = FOLLOWING_FORCE if push.follows else DEAD_FORCE
-        found["vector"][index], found["arm_object"][index] = push.vector, push.at_object_m - center
+        found["vector"][index] = push.vector
+        if push.kind == FIXED_FORCE:
+            found["anchor"][index] = push.at_m - cage_middle(scene)
+        else:
+            found["arm_object"][index] = push.at_m - center
+        found["kind"][index] = push.kind
     for index, moment in enumerate(load.moments, start=1 + len(pushes)):
         found["kind"][index] = FOLLOWING_MOMENT if moment.follows else DEAD_MOMENT
         found["vector"][index] = moment.magnitude_nm * moment.direction
@@ -84,11 +90,13 @@ def body_numbers(scene: Scene) -> dict[str | None, int]:
 
 
 class Push(NamedTuple):
-    """A force that acts: as a vector (3,), in the world or in the object's frame if it follows it, at a point (3,)."""
+    """A force that acts: its kind of `Action`, and its vector (3,), in the world or in the object's frame if it follows
+    it, at a point (3,), metres, in the object's frame, or in the world if it is fixed there.
+    """
 
-    follows: bool
+    kind: int
     vector: FloatArray
-    at_object_m: FloatArray
+    at_m: FloatArray
 
 
 def acting_pushes(load: Load, forces: FloatArray) -> list[Push]:
@@ -96,13 +104,20 @@ def acting_pushes(load: Load, forces: FloatArray) -> list[Push]:
 
     So the stepwise method, which knows one force, sees what such forces come to.
     """
-    pushes = [Push(push.follows, force, push.at_object_m) for push, force in zip(load.pushes, forces, strict=True)]
-    dead = [push for push in pushes if not push.follows]
+    pushes = [_push(push, force) for push, force in zip(load.pushes, forces, strict=True)]
+    dead = [push for push in pushes if push.kind == DEAD_FORCE]
     if len(dead) > 1:
-        one = one_force(np.array([push.vector for push in dead]), np.array([push.at_object_m for push in dead]))
+        one = one_force(np.array([push.vector for push in dead]), np.array([push.at_m for push in dead]))
         if one is not None:
-            return [Push(False, *one), *(push for push in pushes if push.follows)]
+            return [Push(DEAD_FORCE, *one), *(push for push in pushes if push.kind != DEAD_FORCE)]
     return pushes
+
+
+def _push(force: Force, vector: FloatArray) -> Push:
+    if force.at_object_m is not None:
+        return Push(FOLLOWING_FORCE if force.follows else DEAD_FORCE, vector, force.at_object_m)
+    assert force.at_world_m is not None  # it has one of the two
+    return Push(FIXED_FORCE, vector, force.at_world_m)
 
 
 def is_one_force(scene: Scene, load: Load) -> bool:
@@ -111,9 +126,7 @@ def is_one_force(scene: Scene, load: Load) -> bool:
     """
     if load.drive or load.press:
         return False
-    if not load.forces and not load.moments and not load.springs:
-        return load.force is None or not load.force.follows
-    if load.moments or load.springs or any(push.follows for push in load.pushes):
+    if load.moments or load.springs or not all(push.has_potential for push in load.pushes):
         return False
     return len(load.pushes) < 2 or len(acting_pushes(load, scaled_load(scene, load).forces)) == 1
 
@@ -201,10 +214,15 @@ def load_size(scene: Scene, phase: int, pose: Pose, displaced: FloatArray | None
 
 def wrench_at(scene: Scene, phase: int, pose: Pose, displaced: FloatArray | None = None) -> Wrench:
     """Return the sum of all that acts in a phase while the object is at a pose; ``displaced`` as for `actions_of`."""
+    forces, moments = zip(*wrenches_at(scene, phase, pose, displaced), strict=True)
+    return Wrench(np.sum(forces, axis=0), np.sum(moments, axis=0))
+
+
+def wrenches_at(scene: Scene, phase: int, pose: Pose, displaced: FloatArray | None = None) -> Iterator[Wrench]:
+    """Yield what acts in a phase while the object is at a pose, one by one: the weight, forces, moments, then springs;
+    ``displaced`` as for `actions_of`.
+    """
     center = pose.transform(scene.object.center_of_gravity_m) - cage_middle(scene)
-    force, moment = np.zeros(3), np.zeros(3)
     for action in _actions_of_phase(scene, scene.loads[phase], displaced):
         one = acting(action, as_vector(center), pose.as_tuples()[1])
-        force += one.share * np.array(one.force)
-        moment += one.share * np.array(one.moment)
-    return Wrench(force, moment)
+        yield Wrench(one.share * np.array(one.force), one.share * np.array(one.moment))

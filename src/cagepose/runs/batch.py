@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import Rows
-from cagepose.kernels.contact.loads import SPRING, PhaseLoad
+from cagepose.kernels.contact.loads import FIXED_FORCE, SPRING, PhaseLoad
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases
 from cagepose.kernels.outcome.endings import INVALID, NOT_RUN, empty_endings
@@ -134,14 +134,15 @@ def _quaternions(angles: FloatArray | None, pose: Pose) -> FloatArray:
 def _actions(scene: Scene, columns: dict[str, FloatArray]) -> Rows[Rows[PhaseLoad]]:
     varied = [name for name in columns if name.startswith("force_")]
     starts = list[str]()
-    if any(load.springs for load in scene.loads):
+    actions = actions_of(scene)
+    if np.isin(actions["kind"], (SPRING, FIXED_FORCE)).any():
         starts = [name for name in columns if name.startswith(("object_", "cage_", "points_"))]
     n_rows = len(columns[(varied + starts)[0]]) if varied or starts else 1
-    actions = np.repeat(actions_of(scene)[None], n_rows, axis=0)
+    actions = np.repeat(actions[None], n_rows, axis=0)
     if varied:
         _vary_force(scene, columns, actions)
     if starts:
-        _vary_springs(scene, columns, actions)
+        _vary_anchors(scene, columns, actions)
     return cast(Rows[Rows[PhaseLoad]], actions)
 
 
@@ -160,9 +161,9 @@ def _vary_force(scene: Scene, columns: dict[str, FloatArray], actions: np.ndarra
         actions["arm_object"][:, place, 1] = columns["force_at_object_m"] - scene.object.center_of_gravity_m
 
 
-def _vary_springs(scene: Scene, columns: dict[str, FloatArray], actions: np.ndarray) -> None:
-    """Write the springs' tensions, which are those of the preload where the object starts, and where they are held as
-    seen from the middle of the cage.
+def _vary_anchors(scene: Scene, columns: dict[str, FloatArray], actions: np.ndarray) -> None:
+    """Write the springs' tensions, which are those of the preload where the object starts, and where they are held, and
+    fixed forces act, as seen from the middle of the cage.
     """
     start, cage = scene.object.pose_world_object, scene.cage.pose_world_cage
     of_cage = columns.get("cage_position_m", cage.position_m[None]), _quaternions(columns.get("cage_euler_zyx"), cage)
@@ -175,3 +176,7 @@ def _vary_springs(scene: Scene, columns: dict[str, FloatArray], actions: np.ndar
             ends = spring_ends(scene, spring, *of_cage)
             actions["anchor"][:, place, column] = ends - middles
             actions["tension_at_zero"][:, place, column] = tensions_at_zero(spring, ends, positions, quaternions)
+        fixed = np.flatnonzero(actions["kind"][0, place] == FIXED_FORCE)
+        points = [push.at_world_m for push in load.pushes if push.at_world_m is not None]
+        for column, point in zip(fixed, points, strict=True):
+            actions["anchor"][:, place, column] = point - middles

@@ -103,5 +103,15 @@ def prepared(scene: Scene, friction: float) -> tuple[Slots, Slots]:
     """Return `Part` and `Cases` of a scene, taken apart; a scene never changes, so that they are made once."""
     of_scene = _PREPARED.setdefault(scene, {})
     if friction not in of_scene:
-        of_scene[friction] = Slots(part_of(scene)), Slots(cases_of(scene, friction))
+        of_scene[friction] = taken_apart(scene, friction)
     return of_scene[friction]
+
+
+def taken_apart(
+    scene: Scene, friction: float, start: Pose | None = None, displaced: FloatArray | None = None
+) -> tuple[Slots, Slots]:
+    """Return `Part` and `Cases` of a scene, taken apart; ``start`` and ``displaced`` as for `cases_of`, but that a run
+    takes springs along with the bodies itself.
+    """
+    cases = cases_of(scene, friction, start)
+    return Slots(part_of(scene)), Slots(cases if displaced is None else cases._replace(displaced=displaced))

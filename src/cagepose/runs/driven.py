@@ -10,6 +10,7 @@ import numpy as np
 
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
+from cagepose.model.wording import number_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +62,7 @@ class Curve:
     quaternion_wxyz: Annotated[FloatArray, (-1, 4)]
 
     def __repr__(self) -> str:
-        return f"<Curve of {len(self.share)} places>"
+        return f"<Curve of {number_of(len(self.share), 'place')}>"
 
     def places(self) -> Iterator[tuple[float, float, Pose]]:
         """Yield share, sum of the forces along their ways, and the object's pose, place by place."""

@@ -157,4 +157,6 @@ def _beyond_one_force(load: Load) -> str:
         return "moments"
     if any(push.follows for push in load.pushes):
         return "a force that follows the object"
+    if not all(push.has_potential for push in load.pushes):
+        return "a force at a point of the world"
     return "forces that do not come to one force at one point of the object"

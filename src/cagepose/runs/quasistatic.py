@@ -76,12 +76,12 @@ def _edge_motion_warnings(phase: PhaseRun) -> Iterator[str]:
 
 def _failure_warnings(phase: PhaseRun, load: Load) -> Iterator[str]:
     """Why a phase failed, with which contacts, and what to change."""
-    has_potential = not load.moments and not any(push.follows for push in load.pushes)
+    has_potential = not load.moments and all(push.has_potential for push in load.pushes)
     touching = ", ".join(dict.fromkeys(contact.point for contact in phase.contacts)) or "no point"
     if phase.verdict == "limit" and not has_potential:
         yield (
             f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}: moments, and forces that"
-            " follow, can drive an object round for ever; give it a stop or a spring"
+            " follow or stay at a point of the world, can drive an object round for ever; give it a stop or a spring"
         )
     elif phase.verdict == "limit":
         yield f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}; {FAILURE_REMEDY}"

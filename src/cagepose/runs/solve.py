@@ -8,12 +8,15 @@ from collections import OrderedDict
 from typing import Any, NamedTuple, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases
 from cagepose.kernels.outcome.records import Outcome, empty_outcome
+from cagepose.model.checks import FloatArray
+from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.runs.cases import prepared
+from cagepose.runs.cases import prepared, taken_apart
 from cagepose.runs.methods import Method, chosen_method
 from cagepose.runs.run import Run
 from cagepose.runs.solved import Solution, written
@@ -41,14 +44,25 @@ def run(scene: Scene, method: str | None = None) -> Run:
     return run_with(scene, chosen, chosen.rules(scene))
 
 
-def run_with(scene: Scene, method: Method, rules: Any) -> Run:
-    """Run a scene by a method with other numbers than its own."""
+def run_with(
+    scene: Scene,
+    method: Method,
+    rules: Any,
+    begun: tuple[Pose, FloatArray] | None = None,
+    stop: NDArray[np.int64] | None = None,
+) -> Run:
+    """Run a scene by a method with other numbers than its own.
+
+    ``begun``: where the object and the bodies of the cage are instead of where the scene has them, the bodies displaced
+    as for `cases_of`. Nobody asks whether they are apart there; the phases that are read from the run still tell of the
+    scene's start. ``stop``: as for `Entry.until`.
+    """
     friction = method.friction(scene)
-    part, cases = prepared(scene, friction)
+    part, cases = prepared(scene, friction) if begun is None else taken_apart(scene, friction, *begun)
     work = _workspace(scene, method, rules.step_limit, cast(Cases, cases.value))
     began = time.perf_counter()
     try:
-        method.run(part, cases, rules, work.work, work.outcome_slots)
+        method.run.until(stop, part, cases, rules, work.work, work.outcome_slots)
     except KeyboardInterrupt:
         _WORKSPACES.by_size.clear()  # half written
         raise

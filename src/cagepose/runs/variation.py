@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cagepose.model.checks import FloatArray, ProblemList, finite_array
+from cagepose.model.load import Force
 from cagepose.model.scene import Scene
+from cagepose.model.wording import number_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +29,7 @@ class Variation:
         (n,).
     force_direction_world, force_at_object_m, force_magnitude_n
         Of the one force of all phases: (n, 3) of any length but zero, in the object's frame if it follows; (n, 3)
-        metres; and (n,) newtons.
+        metres, of a force that rides on the object; and (n,) newtons.
     """
 
     cage_position_m: ArrayLike | None = None
@@ -52,7 +54,8 @@ class Variation:
         ------
         SceneError
             Another shape than a scene needs, NaN or infinite, unequal numbers of rows, a negative friction, a force
-            that is zero, or one where the scene has none or more than one.
+            that is zero, one where the scene has none or more than one, or a point on the object of one that acts at a
+            point of the world.
         """
         given = {field.name: getattr(self, field.name) for field in fields(self)}
         shapes: dict[str, tuple[int, ...]] = {"points_cage_m": (-1, len(scene.cage.names), 3)}
@@ -66,10 +69,15 @@ class Variation:
         n_runs = len(next(iter(found.values()))) if found else 1
         for name, array in found.items():
             if len(array) != n_runs:
-                problems.add((name,), f"has {len(array)} rows and {next(iter(found))} {n_runs}; give one for each run")
-        n_forces = sum(len(load.pushes) for load in scene.loads)
+                problems.add(
+                    (name,),
+                    f"has {number_of(len(array), 'row')} and {next(iter(found))} {n_runs}; give one for each run",
+                )
+        n_forces = len(_pushes(scene))
         if n_forces != 1 and any(name.startswith("force_") for name in found):
             problems.add(("force",), f"varies, but the scene has {n_forces}; it must be one")
+        elif "force_at_object_m" in found and any(push.at_world_m is not None for push in _pushes(scene)):
+            problems.add(("force_at_object_m",), "varies, but the force acts at a point of the world; leave it out")
         if "friction_coefficient" in found:
             _check_all(found["friction_coefficient"] >= 0.0, "friction_coefficient", "is below zero", problems)
         if "force_magnitude_n" in found:
@@ -79,6 +87,10 @@ class Variation:
             _check_all(is_vector, "force_direction_world", "is zero, so it has no direction", problems)
         problems.raise_if_any()
         return n_runs, found
+
+
+def _pushes(scene: Scene) -> list[Force]:
+    return [push for load in scene.loads for push in load.pushes]
 
 
 def _check_all(holds: np.ndarray, name: str, message: str, problems: ProblemList) -> None:

@@ -43,7 +43,9 @@ class BatchColumns:
             return path[2:3] in (("position",), ("euler_zyx_deg",))
         if path[:2] == ("cage", "points"):
             return len(path) == 4 and not value_at(self._data, ("cage", "bodies"))  # whose points stand behind these
-        return self._force is not None and path[: len(self._force)] == self._force
+        if self._force is None or path[: len(self._force)] != self._force:
+            return False
+        return path[len(self._force)] != "at_world"
 
     def usable(self, columns: Columns) -> NDArray[np.bool_]:
         """Return which rows hold numbers that a scene file may, (n,); the others are for the scene's own checks."""

@@ -14,7 +14,7 @@ from cagepose.files.scene_edit import with_values
 from cagepose.files.study_file import SCENE_NAME, STUDY_NAME, copies
 from cagepose.files.units import with_unit
 from cagepose.files.write import check_can_write, is_made_by_us, json_text, write_whole
-from cagepose.model.wording import percent
+from cagepose.model.wording import number_of, percent
 from cagepose.runs.methods import chosen_method
 from cagepose.sampling.trade_off import TradeOff
 
@@ -85,7 +85,7 @@ class DesignResults:
         to = "" if perhaps == self.file.loose else f" and {perhaps:.5g}"
         if surely is None:
             n_runs = self.n_runs // len(self.trade_off.points)
-            return f"but no value keeps it with 95 % confidence by {n_runs} runs: ask for more"
+            return f"but no value keeps it with 95 % confidence by {number_of(n_runs, 'run')}: ask for more"
         if not to:
             return f"with 95 % confidence at least {surely:.5g}"
         return f"with 95 % confidence between {surely:.5g}{to}"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cagepose.errors import StudyFolderError
+from cagepose.model.wording import number_of
 from cagepose.views.extra import require_study
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ class StudyResults:
         return self._n_rows
 
     def __repr__(self) -> str:
-        return f"<StudyResults: {len(self)} runs in {os.fspath(self.folder.path)!r}>"
+        return f"<StudyResults: {number_of(len(self), 'run')} in {os.fspath(self.folder.path)!r}>"
 
     def require_rows(self) -> None:
         """Do nothing if there is at least one row.

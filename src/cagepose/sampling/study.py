@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from cagepose.errors import Problem, SceneError
 from cagepose.files.study_file import StudyFile, parse_study, read_study_file, study_text
 from cagepose.model.checks import FloatArray
-from cagepose.model.wording import few
+from cagepose.model.wording import few, number_of
 from cagepose.sampling.outcome import Outcomes
 from cagepose.sampling.results import StudyResults
 from cagepose.sampling.runner import Part, Runner, RunPart, Told
@@ -82,7 +82,7 @@ class Study:
 
     def __repr__(self) -> str:
         varied = few(one.key for one in self._file.varied)
-        return f"<Study of {self._file.nominal.scene.name!r}: {len(self)} runs, {varied} vary>"
+        return f"<Study of {self._file.nominal.scene.name!r}: {number_of(len(self), 'run')}, {varied} vary>"
 
     def __len__(self) -> int:
         """How many runs it has."""

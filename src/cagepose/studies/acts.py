@@ -33,7 +33,10 @@ class Act:
     kind, name
         What it is, and what it is called.
     at_object_m
-        Where it acts, in the object's frame, (3,), metres; of a moment the centre of gravity.
+        Where it acts, in the object's frame, (3,), metres; of a moment the centre of gravity. None: a force that acts
+        at a point of the world.
+    at_world_m
+        That point, (3,), metres.
     direction
         Unit vector, (3,), in the world, or in the object's frame if it follows it. Of a spring zero.
     follows
@@ -46,11 +49,19 @@ class Act:
 
     kind: Literal["weight", "force", "moment", "spring"]
     name: str
-    at_object_m: FloatArray
+    at_object_m: FloatArray | None
     direction: FloatArray
     follows: bool = False
+    at_world_m: FloatArray | None = None
     to_world_m: FloatArray | None = None
     body: int = 0
+
+    def at_object(self, pose: Pose) -> FloatArray:
+        """Return where it acts while the object is at a pose, in the object's frame, (3,), metres."""
+        if self.at_object_m is not None:
+            return self.at_object_m
+        assert self.at_world_m is not None
+        return pose.inverse_transform(self.at_world_m)
 
     def end_world(self, cage: CageAt) -> FloatArray:
         """Return where a spring is held, (3,), metres, while the bodies of the cage are where they are.
@@ -69,7 +80,7 @@ class Act:
         cage are where they are; zero where the ends of a spring meet.
         """
         if self.to_world_m is not None:
-            way = self.end_world(cage) - pose.transform(self.at_object_m)
+            way = self.end_world(cage) - pose.transform(self.at_object(pose))
             length = float(np.linalg.norm(way))
             direction: FloatArray = way / length if length else way
             return direction
@@ -90,7 +101,7 @@ def acts_of(scene: Scene, load: Load) -> tuple[Act, ...]:
     for number, push in enumerate(load.pushes, start=1):
         if shown[number]:
             name = load.name if is_alone else f"force {number}"
-            found.append(Act("force", name, push.at_object_m, push.direction, push.follows))
+            found.append(Act("force", name, push.at_object_m, push.direction, push.follows, push.at_world_m))
     for number, moment in enumerate(load.moments, start=1):
         name = load.name if is_alone else f"moment {number}"
         found.append(Act("moment", name, center, moment.direction, moment.follows))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from cagepose.model.checks import FloatArray
-from cagepose.model.wording import counted
+from cagepose.model.wording import counted, number_of
 from cagepose.runs.proof import Uniqueness
 from cagepose.studies.drive_proof import DriveProof
 from cagepose.studies.mode_tree import ModeTree
@@ -38,7 +38,7 @@ class ChosenFaces:
 
     def __repr__(self) -> str:
         proof = "no tree" if self.tree is None else repr(self.tree)
-        return f"<ChosenFaces: {len(self.contacts)} contacts, {proof}>"
+        return f"<ChosenFaces: {number_of(len(self.contacts), 'contact')}, {proof}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ class OtherOnset:
     forces: Annotated[FloatArray, (-1, 3)]
 
     def __repr__(self) -> str:
-        return f"<OtherOnset: {len(self.contacts)} contacts>"
+        return f"<OtherOnset: {number_of(len(self.contacts), 'contact')}>"
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,6 +9,7 @@ import numpy as np
 
 from cagepose.errors import CertificateError
 from cagepose.model.checks import FloatArray
+from cagepose.model.wording import number_of
 from cagepose.studies.certificate import ChosenFaces, OtherOnset
 from cagepose.studies.contact_problem import ContactProblem
 from cagepose.studies.contacts_check import known_contacts
@@ -107,7 +108,10 @@ class CheckedChoice:
             len(self.places),
             3,
         ):
-            raise self._refuse(".tree", f"has {n_leaves} leaves, and not one twist and one set of pressures for each")
+            raise self._refuse(
+                ".tree",
+                f"has {number_of(n_leaves, 'leaf', 'leaves')}, and not one twist and one set of pressures for each",
+            )
         for node, parent in enumerate(tree.parents[1:], start=1):
             if not 0 <= parent < node:
                 raise self._refuse(f".tree, node {node}:", f"its parent {parent} does not come before it")

@@ -10,6 +10,7 @@ import numpy as np
 
 from cagepose.errors import CertificateError
 from cagepose.model.checks import FloatArray
+from cagepose.model.wording import number_of
 from cagepose.studies.contact_problem import ContactProblem
 from cagepose.studies.tolerances import SAME_PLACE_OF_SIZE
 from cagepose.studies.touched_faces import ContactFace
@@ -114,7 +115,9 @@ def _places(told: NamedContacts, problem: ContactProblem, where: str) -> list[in
         raise CertificateError(f"{where}contacts name one of them twice")
     found = [places[face] for face in told.contacts]
     if len(told.friction) != len(found):
-        raise CertificateError(f"{where}friction has {len(told.friction)} coefficients for {len(found)} contacts")
+        raise CertificateError(
+            f"{where}friction has {number_of(len(told.friction), 'coefficient')} for {number_of(len(found), 'contact')}"
+        )
     for face, one, own in zip(told.contacts, told.friction, problem.friction[found], strict=True):
         if one != own:
             raise CertificateError(f"{where}friction of {face} is {float(one)!r}, and the scene's is {float(own)!r}")
@@ -128,7 +131,9 @@ def _check_geometry(told: NamedContacts, problem: ContactProblem, found: list[in
         (told.directions_world, problem.directions[found], 1.0, "rad", "directions_world"),
     ):
         if one.shape != own.shape:
-            raise CertificateError(f"{where}{what} has {len(one)} entries for {len(own)} contacts")
+            raise CertificateError(
+                f"{where}{what} has {number_of(len(one), 'entry', 'entries')} for {number_of(len(own), 'contact')}"
+            )
         apart = np.abs(one - own).max(axis=tuple(range(1, own.ndim)), initial=0.0)
         for number in np.nonzero(~(apart <= SAME_PLACE_OF_SIZE * unit))[0][:1]:
             face = told.contacts[number]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from cagepose.model.checks import FloatArray
-from cagepose.model.wording import counted
+from cagepose.model.wording import counted, number_of
 from cagepose.studies.mode_tree import ModeTree
 from cagepose.studies.touched_faces import ContactFace
 
@@ -41,7 +41,8 @@ class JamChoice:
     taken: float
 
     def __repr__(self) -> str:
-        return f"<JamChoice: {len(self.contacts)} contacts, {'could' if self.motion is None else 'cannot'} jam>"
+        jams = "could" if self.motion is None else "cannot"
+        return f"<JamChoice: {number_of(len(self.contacts), 'contact')}, {jams} jam>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +76,7 @@ class DrivenPlace:
     choices: tuple[JamChoice, ...]
 
     def __repr__(self) -> str:
-        return f"<DrivenPlace {self.row} at {self.share:.6g}: {len(self.contacts)} contacts>"
+        return f"<DrivenPlace {self.row} at {self.share:.6g}: {number_of(len(self.contacts), 'contact')}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +106,8 @@ class StopChoice:
     motion: Annotated[FloatArray, (6,)] | None
 
     def __repr__(self) -> str:
-        return f"<StopChoice: {len(self.contacts)} contacts, {'blocked' if self.tree is None else repr(self.tree)}>"
+        proof = "blocked" if self.tree is None else repr(self.tree)
+        return f"<StopChoice: {number_of(len(self.contacts), 'contact')}, {proof}>"
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from cagepose.model.checks import FloatArray
+from cagepose.model.wording import number_of
 
 Decision = Literal["none", "opens", "closed", "sticks", "slips"]
 
@@ -42,7 +43,7 @@ class ModeTree:
     pressures: Annotated[FloatArray, (-1, -1, 3)]
 
     def __repr__(self) -> str:
-        return f"<ModeTree: {len(self.parents)} nodes, {len(self.leaves())} leaves>"
+        return f"<ModeTree: {number_of(len(self.parents), 'node')}, {number_of(len(self.leaves()), 'leaf', 'leaves')}>"
 
     def leaves(self) -> list[int]:
         """Return the nodes that are not divided."""

@@ -116,7 +116,7 @@ def _load_goals(scene: Scene, loads: list[Load], frame: PlayFrame) -> tuple[Rows
     for index, load in enumerate(loads):
         weight, forces, _ = scaled_load(scene, load)
         pushes = acting_pushes(load, forces)
-        force, at_object = (pushes[0].vector, pushes[0].at_object_m) if pushes else (np.zeros(3), np.zeros(3))
+        force, at_object = (pushes[0].vector, pushes[0].at_m) if pushes else (np.zeros(3), np.zeros(3))
         sizes[index] = max(np.linalg.norm(weight), np.linalg.norm(force))
         goal = goals[index]
         goal.kind, goal.sign = SHIFT, 1.0

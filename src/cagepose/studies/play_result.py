@@ -10,7 +10,7 @@ from typing import Literal
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.model.wording import coordinates, few
+from cagepose.model.wording import coordinates, few, number_of
 from cagepose.studies.cage_verdict import CageVerdict
 from cagepose.studies.play_limits import Clearance
 
@@ -120,7 +120,8 @@ class Play:
     certificate_s: float
 
     def __repr__(self) -> str:
-        return f"<Play of {self.scene.name!r}: {self.verdict}; {few(self.freedoms, 6)}, {len(self.points)} points>"
+        asked = f"{few(self.freedoms, 6)}, {number_of(len(self.points), 'point')}"
+        return f"<Play of {self.scene.name!r}: {self.verdict}; {asked}>"
 
     @property
     def verdict(self) -> str:

@@ -84,8 +84,9 @@ def _load_line(run: Run, phase_index: int) -> tuple[FloatArray, FloatArray]:
     if load.is_weight_alone:
         assert load.gravity_world is not None
         return unit_vector(load.gravity_world, "gravity"), pose.transform(center)
-    if load.force is not None and not load.needs_newtons and not load.force.follows:
-        return load.force.direction, pose.transform(load.force.at_object_m)
+    push = load.force
+    if push is not None and push.at_object_m is not None and not load.needs_newtons and not push.follows:
+        return push.direction, pose.transform(push.at_object_m)
     force, moment = wrench_at(scene, phase_index, pose, displaced_after(run, phase_index))
     square = float(force @ force)
     if square == 0.0:

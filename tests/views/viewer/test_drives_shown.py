@@ -122,7 +122,7 @@ def test_the_end_of_a_spring_rides_on_its_body() -> None:
     assert film.shots[-1].share == 1.0
     maker = PictureMaker(Stage(film))
     maker.picture(film.shots[-1])
-    at, end = maker._ends(spring, film.shots[-1].pose_world_object, maker.now)
+    at, end = maker._ends(spring, film.shots[-1], film.shots[-1].pose_world_object, maker.now)
     way = maker.stage.place(np.array([0.11, 0.0, 0.01])) - maker.stage.place(
         film.shots[-1].pose_world_object.transform((0.01, 0, 0))
     )

@@ -14,6 +14,7 @@ from cagepose.kernels.contact.loads import (
     CARDAN_MOMENT,
     DEAD_FORCE,
     DEAD_MOMENT,
+    FIXED_FORCE,
     FOLLOWING_FORCE,
     SPRING,
     Action,
@@ -73,7 +74,7 @@ def add_load_curvature(
             add_turned_arm(force, arm, -1.0, frame.axes, frame.radii, out)
         elif action.kind == SPRING:
             add_spring_curvature(action, position, quaternion, frame, out)
-        elif action.kind == FOLLOWING_FORCE:
+        elif action.kind == FOLLOWING_FORCE or action.kind == FIXED_FORCE:
             force = acting(action, position, quaternion).force
             add_coupling(force, 0.5, frame.axes, frame.radii, out)
         elif action.kind == CARDAN_MOMENT:
@@ -103,11 +104,12 @@ def add_circulation(load: PhaseLoad, position: Vector, quaternion: Quaternion, f
         if has_potential(action):
             continue
         one = acting(action, position, quaternion)
-        sign = -0.5 if action.kind == DEAD_MOMENT else 0.5
+        # the wrench of what follows is constant in the object, that of a dead moment or a fixed force in the world
+        sign = -0.5 if action.kind == DEAD_MOMENT or action.kind == FIXED_FORCE else 0.5
         for j in range(3):
             turned = cross(one.force, frame.axes[j])
             about = cross(one.moment, frame.axes[j])
             for k in range(3):
-                out[k, 3 + j] += 0.5 * turned[k] / frame.radii[j]
-                out[3 + j, k] -= 0.5 * turned[k] / frame.radii[j]
+                out[k, 3 + j] += sign * turned[k] / frame.radii[j]
+                out[3 + j, k] -= sign * turned[k] / frame.radii[j]
                 out[3 + k, 3 + j] += sign * dot(frame.axes[k], about) / (frame.radii[k] * frame.radii[j])

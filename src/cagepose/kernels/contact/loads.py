@@ -15,8 +15,9 @@ from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
 from cagepose.kernels.contact.tolerances import LENGTH_OF_NO_SPRING, ROUNDING_OF_ENDS, SHORTEST_SPRING
 from cagepose.kernels.native.kernel import kernel
 
-DEAD_FORCE, FOLLOWING_FORCE, DEAD_MOMENT, FOLLOWING_MOMENT, SPRING, CARDAN_MOMENT = 0, 1, 2, 3, 4, 5
-"""Kinds of actions. What is dead keeps its direction in the world, what follows keeps it in the object."""
+DEAD_FORCE, FOLLOWING_FORCE, DEAD_MOMENT, FOLLOWING_MOMENT, SPRING, CARDAN_MOMENT, FIXED_FORCE = 0, 1, 2, 3, 4, 5, 6
+"""Kinds of actions. What is dead keeps its direction in the world, what follows keeps it in the object. A dead force
+rides on the object at its point; a fixed one acts at a point of the world, whatever of the object is there."""
 STRAIGHT, WINDING, BENT, BOUND = 0, 1, 2, 3
 """How an object flies that touches nothing: its centre of gravity along a straight line; on a helix that is carried
 along one; along another way; or so that a spring pulls it back."""
@@ -35,11 +36,11 @@ class Action:
         Force or moment: in the world, or in the object's frame where it follows. Of a Cardan moment: what drives yaw,
         pitch and roll.
     arm_object
-        Where a force or a spring acts, from the centre of gravity, in the object's frame, metres. Of a Cardan moment:
-        the axis of roll in the object's frame, a unit vector.
+        Where a force or a spring acts, from the centre of gravity, in the object's frame, metres; zero for a fixed
+        force. Of a Cardan moment: the axis of roll in the object's frame, a unit vector.
     anchor
-        Where a spring is held, as seen from the middle of the cage points, as positions are; metres. Of a Cardan
-        moment: the axis of yaw in the world, a unit vector.
+        Where a spring is held, or a fixed force acts, as seen from the middle of the cage points, as positions are;
+        metres. Of a Cardan moment: the axis of yaw in the world, a unit vector.
     stiffness
         Of a spring, force for each metre.
     tension_at_zero
@@ -99,6 +100,8 @@ def acting(action: Action, position: Vector, quaternion: Quaternion) -> Acting:
     if action.kind == FOLLOWING_FORCE:
         force = rotated(quaternion, vector)
         return Acting(force, cross(arm_of(action, quaternion), force), 1.0)
+    if action.kind == FIXED_FORCE:
+        return Acting(vector, cross(minus(vector_from(action.anchor), position), vector), 1.0)
     if action.kind == DEAD_MOMENT:
         return Acting((0.0, 0.0, 0.0), vector, 1.0)
     if action.kind == FOLLOWING_MOMENT:
@@ -159,7 +162,7 @@ def total_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, size_m
         action = load[which]
         if action.kind == SPRING:
             total += norm(acting(action, position, quaternion).force)
-        elif action.kind == DEAD_FORCE or action.kind == FOLLOWING_FORCE:
+        elif action.kind == DEAD_FORCE or action.kind == FOLLOWING_FORCE or action.kind == FIXED_FORCE:
             total += norm(vector_from(action.vector))
         else:
             total += norm(vector_from(action.vector)) / size_m
@@ -195,8 +198,8 @@ def work_done(load: PhaseLoad, start: Vector, start_turned: Quaternion, end: Vec
     """Return the work of a phase's load between two poses of the centre of gravity.
 
     That of dead forces, springs and Cardan moments is what their potential falls, (5.2), (5.26) and (5.37). That of
-    other moments, and of what follows, is taken along the screw that joins the poses: their power along it is constant
-    (5.27).
+    other moments, of what follows and of fixed forces is taken along the screw that joins the poses: their power along
+    it is constant (5.27).
     """
     work = 0.0
     for which in range(len(load)):
@@ -234,14 +237,20 @@ def longest_pull(
     spin: Vector,
     turn_step_rad: float,
     size_m: float,
+    reach_m: float,
 ) -> float:
-    """Return how much of a twist springs keep their direction for (5.31); inf: there are none, or none moves.
+    """Return how much of a twist springs keep their direction for, and fixed forces their moment (5.31); inf: there are
+    none, or none of them changes. ``reach_m``: how far the object reaches from its centre of gravity.
 
     A spring whose tension is in proportion to its length has no part in that: its force is linear in the pose.
     """
     amount = math.inf
     for which in range(len(load)):
         action = load[which]
+        if action.kind == FIXED_FORCE:
+            across, force = norm(cross(vector_from(action.vector), velocity)), norm(vector_from(action.vector))
+            if across > 0.0:
+                amount = min(amount, ARCS_PER_TURN * turn_step_rad * reach_m * force / across)
         if action.kind != SPRING:
             continue
         arm = arm_of(action, quaternion)
@@ -267,7 +276,12 @@ def flight(load: PhaseLoad) -> int:
             found = max(found, BOUND if action.stiffness > 0.0 else BENT)
         elif action.kind == FOLLOWING_FORCE:
             follows = True
-        elif action.kind == DEAD_MOMENT or action.kind == CARDAN_MOMENT or norm(vector_from(action.arm_object)) > 0.0:
+        elif (
+            action.kind == DEAD_MOMENT
+            or action.kind == CARDAN_MOMENT
+            or action.kind == FIXED_FORCE
+            or norm(vector_from(action.arm_object)) > 0.0
+        ):
             turns_away = True  # its moment is not the same in the object's frame
     if follows:
         found = max(found, BENT if turns_away else WINDING)
@@ -282,7 +296,7 @@ def drift_and_sway(load: PhaseLoad, position: Vector, quaternion: Quaternion, sp
     dead, following = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for which in range(len(load)):
         action = load[which]
-        if action.kind == DEAD_FORCE:
+        if action.kind == DEAD_FORCE or action.kind == FIXED_FORCE:
             dead = plus(dead, vector_from(action.vector))
         elif action.kind == FOLLOWING_FORCE:
             following = plus(following, acting(action, position, quaternion).force)

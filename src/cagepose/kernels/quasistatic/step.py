@@ -178,7 +178,9 @@ def twist_of_step(
     spin = straightened(velocity, spin, setting.body.reach_m, 0.0)
     longest = min(
         longest_step(work.contacts, velocity, spin, slides, turn_step_rad, setting.size_m),
-        longest_pull(setting.load, position, quaternion, velocity, spin, turn_step_rad, setting.size_m),
+        longest_pull(
+            setting.load, position, quaternion, velocity, spin, turn_step_rad, setting.size_m, setting.body.reach_m
+        ),
     )
     return Twist(velocity, spin, min(1.0, longest)), longest
 
@@ -205,7 +207,7 @@ def next_twist(
     load, size_m = setting.load, setting.size_m
     end = min(
         longest_step(contacts, velocity, spin, carries, turn_step_rad, size_m),
-        longest_pull(load, position, quaternion, velocity, spin, turn_step_rad, size_m),
+        longest_pull(load, position, quaternion, velocity, spin, turn_step_rad, size_m, setting.body.reach_m),
     )
     twist = Twist(velocity, spin, end)
     if end < math.inf:

@@ -139,9 +139,10 @@ class _Maker:
 
     def _force(self, group: str, name: str, key: str, given: dict[str, Any]) -> list[Control]:
         labels = tuple(f"{name}acts at {axis}" for axis in AXES)
+        at = "at" if given.get("at") is not None else "at_world"
         return [
             *self._directions(group, f"{name}direction", f"{key}.direction", given["direction"]),
-            *self._vector(group, labels, self.unit, f"{key}.at", given["at"], REACH_OF_FORCE * self.size),
+            *self._vector(group, labels, self.unit, f"{key}.{at}", given[at], REACH_OF_FORCE * self.size),
         ]
 
     def _directions(self, group: str, name: str, key: str, given: list[float]) -> list[Control]:

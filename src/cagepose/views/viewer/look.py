@@ -26,6 +26,7 @@ PAINT = {
     "force": "#d55e00",
     "normal": "#4d4d4d",
     "load": "#161616",
+    "hand": "#007a56",
     "axis": "#cc79a7",
     "trace": "#0072b2",
     "grid": "#d3d8de",

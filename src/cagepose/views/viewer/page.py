@@ -7,6 +7,7 @@ import json
 import re
 from importlib.resources import files
 
+from cagepose.views.viewer.hand import grips
 from cagepose.views.viewer.page_data import page_data
 from cagepose.views.viewer.playback import Playback
 from cagepose.views.viewer.what_if import WhatIf
@@ -22,6 +23,7 @@ def page(shown: Playback, what_if: WhatIf | None = None) -> str:
     if what_if is not None:
         content["controls"] = [control.document() for control in what_if.controls]
         content["fileName"] = what_if.file_name
+        content["grips"] = grips(shown.run)
     data = json.dumps(content, allow_nan=False, separators=(",", ":"))
     parts = {
         "@TITLE@": html.escape(shown.run.scene.name),

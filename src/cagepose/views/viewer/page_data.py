@@ -13,6 +13,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Capsule, Shape, Sphere, Turned
+from cagepose.model.wording import duration
 from cagepose.runs.cases import contact_friction
 from cagepose.runs.changes import Change, changes_of
 from cagepose.runs.driven_cage import CageAt
@@ -22,7 +23,7 @@ from cagepose.runs.on_the_way import DRIVEN
 from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, STOPPED
 from cagepose.studies.acts import Act
 from cagepose.studies.comparison import ENDS, same_pose
-from cagepose.studies.ending import run_kind, verdict_kind
+from cagepose.studies.ending import run_kind, turned_far, verdict_kind
 from cagepose.views.drive_words import STOPS, along_drawn, drive_data, how_far, share_words
 from cagepose.views.solids import Solid, solid_of
 from cagepose.views.viewer import look
@@ -35,20 +36,21 @@ DRAWN_DIGITS = 13
 """Behind the point, of places: a picture may be a millionth of the scene wide, or less."""
 
 
-def page_data(shown: Playback) -> dict[str, Any]:
-    """Return the data of a page: only dict, list, str, int, finite float, bool and None.
+def page_data(shown: Playback, stage: Stage | None = None) -> dict[str, Any]:
+    """Return the data of a page: only dict, list, str, int, finite float, bool and None. ``stage``: that of the
+    playback, if it is there already.
 
     Lengths are in drawing units (see `Stage`), but for the words and for ``origin``, which is in the scene's own unit.
     Axes, normals, forces and centres are in the object's frame, so that they go along with the object as it is shown.
     """
-    return _Writer(shown).document()
+    return _Writer(shown, stage or Stage(shown)).document()
 
 
 class _Writer:
-    def __init__(self, shown: Playback) -> None:
+    def __init__(self, shown: Playback, stage: Stage) -> None:
         self.shown = shown
         self.run = shown.run
-        self.stage = Stage(shown)
+        self.stage = stage
         self.usual_friction = chosen_method(self.run.scene, self.run.method).friction(self.run.scene)
         self.words = LengthWords(shown.length_unit, shown.run.scene.size_m)
         self.touches = list(dict.fromkeys(shot.touches for shot in shown.shots))
@@ -62,10 +64,11 @@ class _Writer:
         return {
             "name": run.scene.name,
             "method": run.method,
-            "solve": f"{run.solve_s * 1000.0:.3g} ms",
+            "solve": duration(run.solve_s),
             "verdict": run.verdict,
             "verdictKind": run_kind(run),
             "contradicted": CONTRADICTED if run.is_contradicted else "",
+            "turned": list(turned_far(run)),
             "unit": self.shown.length_unit,
             "unitsPerDrawing": float(from_metres(stage.size_m, self.shown.length_unit)),
             "radius": stage.radius,
@@ -242,7 +245,8 @@ class _Writer:
         return {
             "kind": act.kind,
             "name": act.name,
-            "at": _numbers(act.at_object_m / self.stage.size_m),
+            "at": None if act.at_object_m is None else _numbers(act.at_object_m / self.stage.size_m),
+            "atWorld": None if act.at_world_m is None else _numbers(self.stage.place(act.at_world_m)),
             "direction": _numbers(act.direction),
             "follows": act.follows,
             "to": None if act.to_world_m is None else _numbers(self.stage.place(act.to_world_m)),
@@ -271,7 +275,8 @@ def notes(shown: Playback) -> list[str]:
         else:
             where = f" after event {len(shown.rows)}: {_failing(shown)}" if phase.verdict in FAILURES else ""
             ends.append(f"{phase.name}: {phase.verdict}{far}{where}")
-    return [*ends, *(f"Warning: {warning}" for warning in run.warnings)]
+    turned = [f"It turned far in {told}" for told in turned_far(run)]
+    return [*ends, *turned, *(f"Warning: {warning}" for warning in run.warnings)]
 
 
 def _failing(shown: Playback) -> str:

@@ -116,7 +116,7 @@ class PictureMaker:
         now = self._look(last)
         found.append(self.stage.place(self.stage.points(now)))
         for act in self.shown.loads[last.phase] if len(shots) < len(self.shown.rows) else sum(self.shown.loads, ()):
-            found.append(np.stack(self._ends(act, end, now)))
+            found.append(np.stack(self._ends(act, last, end, now)))
         if last.touches.forces_object is not None:
             places = self.places(last)
             forces = last.touches.forces_object @ end.rotation.T
@@ -275,7 +275,7 @@ class PictureMaker:
 
     def _draw_loads(self, shot: Shot, pose: Pose) -> None:
         for act in self.shown.loads[shot.phase]:
-            start, end = self._ends(act, pose, self.now)
+            start, end = self._ends(act, shot, pose, self.now)
             if act.kind == "spring":
                 line = coil(start, end, look.COIL * self.eye.pixel(start))
                 for one, other in itertools.pairwise(line):
@@ -286,11 +286,13 @@ class PictureMaker:
                 self.marks.arrow(start, start + look.SECOND_HEAD * (end - start), 1.3 * look.ROD, PAINT["load"])
             self._name(end if act.kind == "spring" else start, act.name, is_loud=True)
 
-    def _ends(self, act: Act, pose: Pose, now: Look) -> tuple[FloatArray, FloatArray]:
-        """Return where an act's arrow starts and ends: that of a force ends where it acts, that of a moment starts at
-        the centre of gravity. A spring is drawn for `LONGEST_SPRING` at most.
+    def _ends(self, act: Act, shot: Shot, pose: Pose, now: Look) -> tuple[FloatArray, FloatArray]:
+        """Return where an act's arrow starts and ends at a shot whose object is shown at a pose: that of a force ends
+        at the place of the object where it truly acts, that of a moment starts at the centre of gravity. A spring is
+        drawn for `LONGEST_SPRING` at most.
         """
-        at, direction = self.stage.place(pose.transform(act.at_object_m)), act.direction_at(pose, now.cage)
+        at = self.stage.place(pose.transform(act.at_object(shot.pose_world_object)))
+        direction = act.direction_at(pose, now.cage)
         if act.to_world_m is not None:
             length = float(np.linalg.norm(self.stage.place(act.end_world(now.cage)) - at))
             return at, at + min(length, look.LONGEST_SPRING) * direction

@@ -16,6 +16,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.changes import Seen, as_seen
 from cagepose.runs.driven_cage import CageAt, cage_at, cage_at_start
+from cagepose.runs.further import LED
 from cagepose.runs.on_the_way import is_driven_on, row_on_curve, share_before, value_at
 from cagepose.runs.run import Contact, Event, Frame, Motion, PhaseRun, Run
 from cagepose.studies.acts import Act, acts_of
@@ -26,6 +27,8 @@ SHOTS_PER_MOTION = 24
 """One second of film for each motion."""
 MOTIONS_PER_DRIVE = 4
 """A whole drive takes as long as so many motions."""
+SHOTS_OF_A_LED_WAY = 24
+"""At least: it may go around corners."""
 MOST_SHOTS = 4_800
 """A run has at most so many shots, so that each of thousands of motions has fewer. A failed run of 3,000 took 29 MB and
 6 s as a page."""
@@ -177,8 +180,19 @@ def playback(run: Run, length_unit: LengthUnit = "mm", shots_per_motion: int = S
     for phase_index, phase in enumerate(run.phases):
         camera.shoot(phase_index, phase)
     loads = tuple(acts_of(run.scene, load) for load in run.scene.loads[: len(run.phases)])
-    shots, rows = tuple(camera.shots), tuple(camera.rows)
-    return Playback(run.scene, length_unit, camera.points_world, shots, rows, shots_per_motion, loads, run)
+    return camera.film(length_unit, loads)
+
+
+def playback_led_on(before: Playback, run: Run) -> Playback:
+    """Return the playback of a run that `further` has led on, given that of the run which it was led on from: what was
+    shot of the phases that both have is taken over. In the last phase acts what acts in the one before.
+    """
+    last = len(run.phases) - 1
+    camera = _Camera(run, before.shots_per_motion)
+    camera.rows = [row for row in before.rows if row.phase < last]
+    camera.shots = list(before.shots[: camera.rows[-1].last_shot + 1])
+    camera.shoot(last, run.phases[last])
+    return camera.film(before.length_unit, (*before.loads[:last], before.loads[last - 1]))
 
 
 class _TouchesAt:
@@ -224,6 +238,12 @@ class _Camera:
         self.shots: list[Shot] = [Shot(-1, 0, start, cage, self.at.of(start, cage, ()))]
         self.rows: list[Row] = []
         self._asked, self._found = (0, 0.0), cage
+
+    def film(self, length_unit: LengthUnit, loads: tuple[tuple[Act, ...], ...]) -> Playback:
+        """Return what was shot."""
+        shots, rows = tuple(self.shots), tuple(self.rows)
+        scene = self.run.scene
+        return Playback(scene, length_unit, self.points_world, shots, rows, self.shots_per_motion, loads, self.run)
 
     def shoot(self, phase_index: int, phase: PhaseRun) -> None:
         pose, before = phase.start_pose, frozenset[str]()
@@ -280,6 +300,8 @@ class _Camera:
             n_shots = math.ceil(MOTIONS_PER_DRIVE * way * n_shots)
         elif event.motion is None:
             return []
+        elif event.rule == LED:
+            n_shots = max(n_shots, SHOTS_OF_A_LED_WAY)
         return [self.run.frame_at(phase_index, event_index, step / n_shots) for step in range(1, n_shots)]
 
     def _held(self, pose: Pose, cage: CageAt, contacts: tuple[Contact, ...]) -> Touches:

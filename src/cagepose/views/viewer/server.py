@@ -1,4 +1,4 @@
-"""The live viewer: the page, and a server on this machine that runs the scene again when a slider moves.
+"""The live viewer: the page, and a server on this machine that runs the scene when a slider moves or a hand pulls.
 
 The server keeps nothing between two questions, so that windows cannot disturb each other: each sends all of its values.
 It answers only who names it by its own name, and takes values only as JSON, which a page from elsewhere cannot send: no
@@ -84,7 +84,7 @@ class _Answers(BaseHTTPRequestHandler):
         if not self._is_meant():
             return
         what_if = self.server.what_if
-        if what_if is None or self.path not in ("/run", "/scene"):
+        if what_if is None or self.path not in ("/run", "/pull", "/scene"):
             self.close_connection = True  # what was sent is left unread, and must not be taken for the next request
             self._send(HTTPStatus.NOT_FOUND, "text/plain", b"nothing can be changed here\n")
             return
@@ -92,9 +92,12 @@ class _Answers(BaseHTTPRequestHandler):
             values = self._values()
             if self.path == "/scene":
                 self._send(HTTPStatus.OK, "application/yaml", what_if.saved(values).encode())
+            elif self.path == "/pull":
+                asked = values if isinstance(values, dict) else {}
+                self._send_json(HTTPStatus.OK, what_if.pulled(asked.get("values"), asked.get("pull")))
             else:
                 self._send_json(HTTPStatus.OK, what_if.answer(values))
-        except (CageposeError, ValueError) as error:
+        except (CageposeError, ValueError, TimeoutError) as error:
             self._send_json(HTTPStatus.UNPROCESSABLE_ENTITY, {"problems": what_if.problems(error)})
 
     def _is_meant(self) -> bool:

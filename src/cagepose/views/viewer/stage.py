@@ -111,11 +111,18 @@ class Stage:
         What each phase is measured from.
     """
 
-    def __init__(self, shown: Film) -> None:
+    def __init__(self, shown: Film, before: Stage | None = None) -> None:
+        """``before``: the stage of a playback whose first phases are those of this one, but for its last; what was
+        found out about these is taken over.
+        """
         scene, held = shown.scene, shown.scene.object
         self.shown = shown
         self.center_object_m = held.center_of_gravity_m
         self._gaps: dict[int, FloatArray] = {}
+        self._known: tuple[PhaseView, ...] = ()
+        if before is not None:
+            self._known = before.phases[: shown.rows[-1].phase]
+            self._gaps = {shot: gaps for shot, gaps in dict(before._gaps).items() if shot <= self._known[-1].last}
         ends = (shown.shots[0].pose_world_object, shown.shots[-1].pose_world_object)
         cages = _distinct([shown.shots[0].cage, *(shown.shots[row.last_shot].cage for row in shown.rows)])
         points = (cage.points_world for cage in cages)
@@ -162,9 +169,11 @@ class Stage:
 
     @cached_property
     def phases(self) -> tuple[PhaseView, ...]:
-        views: list[PhaseView] = []
-        for _, group in itertools.groupby(self.shown.rows, lambda row: row.phase):
+        views = list(self._known)
+        for phase, group in itertools.groupby(self.shown.rows, lambda row: row.phase):
             rows = list(group)
+            if phase < len(self._known):
+                continue
             before = views[-1] if views else PhaseView(0, 0, 0, 0, 1)
             long = [row.last_shot for row in rows if self._is_long(row.first_shot - 1, row.last_shot)]
             start, reference = (long[-1], long[-1]) if long else (before.last, before.reference)
@@ -308,12 +317,18 @@ class Stage:
         """Whether a motion is shown as it is, from one shot to another, as one is on which bodies are driven."""
         if self.cage(one) is not self.cage(other):
             return True
-        return not (self._fits(self._moved(one, other), 2) and self._meet(other, Look(one, LONG_AT, self.cage(other))))
+        moved = self._moved(one, other)
+        if self._stands(moved):
+            return False
+        return not (self._fits(moved, 2) and self._meet(other, Look(one, LONG_AT, self.cage(other))))
+
+    def _stands(self, moved: tuple[float, float]) -> bool:
+        return moved[0] < MOTION_AT_REST and moved[1] < MOTION_AT_REST * self.size_m
 
     def _proposed(self, reference: int, start: int, last: int) -> int:
         ends = [row.last_shot for row in self.shown.rows if start < row.last_shot <= last]
         moves = [self._moved(reference, shot) for shot in ends]
-        if all(turn < MOTION_AT_REST and way < MOTION_AT_REST * self.size_m for turn, way in moves):
+        if all(map(self._stands, moves)):
             return 1
         for k in reversed(EXAGGERATIONS):
             if all(self._fits(move, k) for move in moves) and all(

@@ -1,11 +1,15 @@
-"""A scene file that a viewer changes and runs again, and again. It keeps nothing between two questions."""
+"""A scene file that a viewer changes and runs again, and again. Between two questions it keeps its last runs, from
+which pulls go on, and nothing else: what it answers hangs on the question alone.
+"""
 
 from __future__ import annotations
 
 import copy
+import json
 import math
+from functools import lru_cache
 from pathlib import PurePath
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,8 +22,10 @@ from cagepose.files.units import from_metres, to_metres
 from cagepose.model.pose import Pose
 from cagepose.runs.solve import run
 from cagepose.views.viewer.controls import Control, controls
+from cagepose.views.viewer.hand import grip_of, grips, pulled
 from cagepose.views.viewer.page_data import page_data
-from cagepose.views.viewer.playback import playback
+from cagepose.views.viewer.playback import Playback, playback
+from cagepose.views.viewer.stage import Stage
 
 START = "start"
 """What a page calls the way, (3,) in the scene's unit, by which somebody dragged the start."""
@@ -27,6 +33,12 @@ LENGTH_DECIMALS = 12
 """Lengths of a start pose are written with so many decimals in the scene's unit."""
 SHOTS_PER_MOTION = 4
 """Fewer than in an exported page, whose maker need not wait for them; the page fills in what is between."""
+RUNS_KEPT = 8
+
+
+class _Ran(NamedTuple):
+    shown: Playback
+    stage: Stage
 
 
 class WhatIf:
@@ -55,6 +67,7 @@ class WhatIf:
         self._scene_file = self._text.scene_file()
         self.controls: list[Control] = controls(self._text)
         self.file_name = f"{PurePath(scene_text.yaml.source).stem}-changed.yaml"
+        self._ran = lru_cache(RUNS_KEPT)(self._run)
 
     def answer(self, values: object) -> dict[str, Any]:
         """Return the data of a page for the scene with ``values``, a mapping from keys of controls.
@@ -66,8 +79,29 @@ class WhatIf:
         ValueError
             A key that no control has, or a value that is neither a number, a word nor a list of numbers.
         """
-        scene_file = self.scene(values)
-        return page_data(playback(run(scene_file.scene), scene_file.length_unit, SHOTS_PER_MOTION))
+        shown, stage = self._ran(json.dumps(values, sort_keys=True))
+        return {**page_data(shown, stage), "grips": grips(shown.run)}
+
+    def pulled(self, values: object, pull: object) -> dict[str, Any]:
+        """Return the data of a page for the scene with ``values`` on which somebody pulls, see `grip_of`.
+
+        Raises
+        ------
+        SceneFileError, ValueError
+            As `answer`; or nobody can pull so.
+        TimeoutError
+            See `pulled`.
+        """
+        shown, stage = self._ran(json.dumps(values, sort_keys=True))
+        return pulled(shown, stage, grip_of(pull, shown.run, shown.length_unit))
+
+    def _run(self, values: str) -> _Ran:
+        scene_file = self.scene(json.loads(values))
+        shown = playback(run(scene_file.scene), scene_file.length_unit, SHOTS_PER_MOTION)
+        stage = Stage(shown)
+        for phase in stage.phases:
+            stage.gaps_world(phase.last)  # from there a pull goes on
+        return _Ran(shown, stage)
 
     def scene(self, values: object) -> SceneFile:
         """Return the scene with ``values``.
@@ -89,7 +123,7 @@ class WhatIf:
         """
         return edited_text(self._text, self._settings(values))
 
-    def problems(self, error: CageposeError | ValueError) -> list[str]:
+    def problems(self, error: CageposeError | ValueError | TimeoutError) -> list[str]:
         """Return what is wrong, in words for people who look at sliders and not at the file."""
         if isinstance(error, SceneFileError):
             return [str(Problem(problem.path, problem.message)) for problem in error.problems]

@@ -1,0 +1,50 @@
+// Questions to the viewer's server, one at a time: an answer cannot come before that to an earlier question. What is asked
+// meanwhile waits, the last of it alone.
+
+import { $, element } from "./words.js";
+
+export class Asker {
+  constructor() {
+    this.now = this.next = this.tookMs = null;
+  }
+
+  get isBusy() {
+    return this.now !== null;
+  }
+
+  // `body()` is what to send, as it is then; `answered(answer)` shows what comes back. Where something else is to be run
+  // meanwhile, the answer to a pull is dropped.
+  async ask(path, body, answered) {
+    this.next = { path, body, answered };
+    if (this.isBusy) return;
+    try {
+      while (this.next) {
+        [this.now, this.next] = [this.next, null];
+        $("busy").hidden = false;
+        const { path, body, answered } = this.now;
+        const asked = performance.now();
+        const response = await post(path, body());
+        const answer = await response.json();
+        if (path === "pull" && this.next && this.next.path !== path) continue;
+        if (response.ok) answered(answer);
+        this.tookMs = performance.now() - asked; // the picture included
+        this.complain(response.ok ? [] : answer.problems, path === "pull" ? "answer" : "scene that could be run");
+      }
+    } catch (error) {
+      if (!(error instanceof TypeError)) throw error; // what a lost connection is told by
+      this.complain(["The viewer's server does not answer; start cagepose view again."], "answer");
+    } finally {
+      this.now = null;
+      $("busy").hidden = true;
+    }
+  }
+
+  complain(problems, shown) {
+    const told = problems.length > 3 ? [...problems.slice(0, 2), `and ${problems.length - 2} more`] : problems;
+    $("problems").replaceChildren(...told.map((problem) => element("p", problem)));
+    if (problems.length) $("problems").append(element("p", `Shown is the last ${shown}.`));
+    $("problems").hidden = !problems.length;
+  }
+}
+
+export const post = (path, content) => fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(content) });
