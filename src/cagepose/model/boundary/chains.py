@@ -61,10 +61,12 @@ def with_arcs(
     return found, np.concatenate([vertices_m, np.array(places).reshape(-1, 3)])
 
 
-def _arcs(
-    ends_m: FloatArray, surfaces: Sequence[Surface], flat_m: float
-) -> tuple[FloatArray | None, list[Circle]]:
-    """Return the circles of an edge between two places of its surfaces, and where two of them meet."""
+def _arcs(ends_m: FloatArray, surfaces: Sequence[Surface], flat_m: float) -> tuple[FloatArray | None, list[Circle]]:
+    """Return the circles of an edge between two places of its surfaces, and where two of them meet. Without circles it
+    is straight: between hollow sides alone, what is round never rolls from one over onto its edge.
+    """
+    if not any(surface.radius_m > 0.0 for surface in surfaces):
+        return None, []
     start, end = ends_m
     seen = onto(ends_m.mean(axis=0, keepdims=True), surfaces)[0] - start
     chord = end - start

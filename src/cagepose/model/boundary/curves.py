@@ -55,7 +55,6 @@ class Curve(NamedTuple):
         unit: FloatArray = found / np.linalg.norm(found)
         return unit
 
-
     def at(self, shares: FloatArray, vertices_m: FloatArray) -> FloatArray:
         """Return places of an arc at shares of its way, (n, 3)."""
         across = vertices_m[self.nodes[0]] - self.center_m

@@ -43,13 +43,18 @@ def exact_faces(shape: Facets) -> ExactFaces:
 
 
 def off_curves(surface: ExactSurface) -> float:
-    """Return how far arcs are from the curves in which surfaces cross, metres."""
+    """Return how far lines and arcs are from the curves in which surfaces cross, metres."""
     farthest = 0.0
     for curve in surface.curves:
+        beside = exact_beside(curve, surface.regions)
+        if not any(face.is_round for face in beside):
+            continue
         if curve.kind == ARC:
             places = curve.at(ALONG, surface.vertices_m)
-            for face in exact_beside(curve, surface.regions):
-                farthest = max(farthest, float(np.abs(face.heights(places)).max()))
+        else:
+            start, end = surface.vertices_m[curve.nodes[[0, -1]]]
+            places = start + np.outer(ALONG, end - start)
+        farthest = max(farthest, *(float(np.abs(face.heights(places)).max()) for face in beside))
     return farthest
 
 
