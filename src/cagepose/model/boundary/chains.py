@@ -22,7 +22,7 @@ from cagepose.model.surfaces import Surface
 ALONG = np.array((0.21, 0.5, 0.79))
 """Shares of the way along an arc where it is about farthest from the curve that it stands for."""
 STRAIGHT = 2.0
-"""In what is flat: an edge that its curve is no farther from is straight."""
+"""In what is near: an edge that its curve is no farther from is straight."""
 LEAST_SINE = 1e-3
 """Of the angle between two surfaces: with less, the tangent of the curve in which they cross is not told."""
 
@@ -41,7 +41,7 @@ def exact_beside(curve: Curve, regions: Regions) -> list[Surface]:
 
 
 def with_arcs(
-    curves: Sequence[Curve], vertices_m: FloatArray, regions: Regions, flat_m: float
+    curves: Sequence[Curve], vertices_m: FloatArray, regions: Regions, near_m: float
 ) -> tuple[list[Curve], FloatArray]:
     """Return curves with each edge of a chain as an arc or two, and vertices with the places where two of them meet."""
     found, places = list[Curve](), list[FloatArray]()
@@ -52,7 +52,7 @@ def with_arcs(
         for k in range(len(curve.sides)):
             nodes = [int(curve.nodes[k]), int(curve.nodes[k + 1])]
             edge = curve._replace(kind=LINE, nodes=np.array(nodes), sides=curve.sides[k : k + 1])
-            middle, circles = _arcs(vertices_m[nodes], exact_beside(curve, regions), flat_m)
+            middle, circles = _arcs(vertices_m[nodes], exact_beside(curve, regions), near_m)
             if middle is not None:
                 nodes.insert(1, len(vertices_m) + len(places))
                 places.append(middle)
@@ -61,17 +61,17 @@ def with_arcs(
     return found, np.concatenate([vertices_m, np.array(places).reshape(-1, 3)])
 
 
-def _arcs(ends_m: FloatArray, surfaces: Sequence[Surface], flat_m: float) -> tuple[FloatArray | None, list[Circle]]:
+def _arcs(ends_m: FloatArray, surfaces: Sequence[Surface], near_m: float) -> tuple[FloatArray | None, list[Circle]]:
     """Return the circles of an edge between two places of its surfaces, and where two of them meet. Without circles it
-    is straight: between hollow sides alone, what is round never rolls from one over onto its edge.
+    is straight: that of a hollow side, as of a hole, whose ends lie on both sides of what rolls over them.
     """
-    if not any(surface.radius_m > 0.0 for surface in surfaces):
+    if any(surface.radius_m < 0.0 for surface in surfaces):
         return None, []
     start, end = ends_m
     seen = onto(ends_m.mean(axis=0, keepdims=True), surfaces)[0] - start
     chord = end - start
     length = float(np.linalg.norm(chord))
-    if float(np.linalg.norm(np.cross(seen, chord))) <= STRAIGHT * flat_m * length:
+    if float(np.linalg.norm(np.cross(seen, chord))) <= STRAIGHT * near_m * length:
         return None, []
     tangents = _tangents(ends_m, surfaces)
     if tangents is None:
@@ -87,7 +87,8 @@ def _tangents(ends_m: FloatArray, surfaces: Sequence[Surface]) -> tuple[FloatArr
     """Return the unit vectors along a curve at both ends of an edge of it; None: surfaces do not tell."""
     if len(surfaces) < 2:
         return None
-    ways = np.cross(*(surface.normals(ends_m) for surface in surfaces))
+    one, other = surfaces
+    ways = np.cross(one.normals(ends_m), other.normals(ends_m))
     sizes = np.linalg.norm(ways, axis=1, keepdims=True)
     if sizes.min() < LEAST_SINE:
         return None
@@ -114,9 +115,9 @@ def _circle_through(start: FloatArray, seen: FloatArray, chord: FloatArray) -> C
     return Circle(start + toward, normal / math.sqrt(square), float(np.linalg.norm(toward)))
 
 
-def off_edges(curve: Curve, vertices_m: FloatArray, regions: Regions, flat_m: float) -> FloatArray:
+def off_edges(curve: Curve, vertices_m: FloatArray, regions: Regions, near_m: float) -> FloatArray:
     """Return how far the arcs of each edge of a chain are from its surfaces, metres, (n - 1,)."""
-    arcs, vertices = with_arcs([curve], vertices_m, regions, flat_m)
+    arcs, vertices = with_arcs([curve], vertices_m, regions, near_m)
     found = np.zeros(len(curve.sides))
     edges = {int(side): k for k, side in enumerate(curve.sides)}
     for arc in arcs:
@@ -127,20 +128,29 @@ def off_edges(curve: Curve, vertices_m: FloatArray, regions: Regions, flat_m: fl
     return found
 
 
+def on_surfaces(chains: Sequence[Curve], vertices_m: FloatArray, regions: Regions) -> FloatArray:
+    """Return vertices with those between the ends of chains moved onto their surfaces: files have them nearly there."""
+    moved = vertices_m.copy()
+    for curve in chains:
+        nodes = curve.nodes[:-1] if curve.is_closed else curve.nodes[1:-1]
+        moved[nodes] = onto(vertices_m[nodes], exact_beside(curve, regions))
+    return moved
+
+
 def halved(
     chains: Sequence[Curve],
     vertices_m: FloatArray,
     triangles: IntArray,
     on: IntArray,
     regions: Regions,
-    flat_m: float,
+    near_m: float,
 ) -> tuple[FloatArray, IntArray, IntArray]:
     """Return vertices, triangles and what these stand for with those edges of chains halved, at a place of
-    their surfaces, whose arcs are not on them yet.
+    their surfaces, whose arcs are not as near to them yet.
     """
     middles, of_sides = list[FloatArray](), dict[tuple[int, int], int]()
     for curve in chains:
-        for k in np.flatnonzero(off_edges(curve, vertices_m, regions, flat_m) > flat_m).tolist():
+        for k in np.flatnonzero(off_edges(curve, vertices_m, regions, near_m) > near_m).tolist():
             start, end = sorted(curve.nodes[k : k + 2].tolist())
             of_sides[start, end] = len(vertices_m) + len(middles)
             middle = vertices_m[[start, end]].mean(axis=0, keepdims=True)

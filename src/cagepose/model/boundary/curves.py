@@ -248,4 +248,5 @@ def _steps(curve: Curve, vertices_m: FloatArray) -> FloatArray:
     """Return the angles between neighbouring nodes of an arc, radians."""
     seen = vertices_m[curve.nodes] - curve.center_m
     across = np.einsum("ij,j->i", np.cross(seen[:-1], seen[1:]), curve.axis)
-    return np.arctan2(across, np.einsum("ij,ij->i", seen[:-1], seen[1:]))
+    angles: FloatArray = np.arctan2(across, np.einsum("ij,ij->i", seen[:-1], seen[1:]))
+    return angles

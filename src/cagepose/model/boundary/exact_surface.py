@@ -17,7 +17,7 @@ import numpy as np
 from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.union.loops import Border, Loop, find_loops
 from cagepose.model.boundary.blocks import Block
-from cagepose.model.boundary.chains import halved, with_arcs
+from cagepose.model.boundary.chains import halved, on_surfaces, with_arcs
 from cagepose.model.boundary.curves import ARC, CHAIN, LINE, Curve, curves_of, pieces_of
 from cagepose.model.boundary.regions import FacePlanes, regions_of
 from cagepose.model.boundary.round_features import ball_of, circle_of, is_within_caps, side_of, tip_of
@@ -60,7 +60,7 @@ class ExactSurface(NamedTuple):
     Attributes
     ----------
     vertices_m, triangles, twins
-        See `Facets` and `cagepose.model.sides.twins_of`. Behind corners of triangles, there are places between two arcs.
+        See `Facets` and `cagepose.model.sides.twins_of`. Behind the corners of triangles are places between two arcs.
     on
         Which surface of its shape each triangle was told to stand for, (m,); -1: none.
     regions, curves
@@ -121,14 +121,16 @@ def _surface_of(placed: _Placed) -> ExactSurface:
     surfaces = [surface.changed(1.0, shape.pose_body_shape) for surface in shape.surfaces]
     first = np.array([*(surfaces.index(surface) for surface in surfaces), -1])
     found = _without_lost_balls(shape.nodes_body(), shape.triangles, first[shape.on], surfaces, shape.flat_m)
+    near_m = FLAT * float(np.ptp(found.vertices_m, axis=0).max())
     for _ in range(HALVINGS):
         chains = [curve for curve in found.curves if curve.kind == CHAIN]
-        finer = halved(chains, found.vertices_m, found.triangles, found.on, found.regions, shape.flat_m)
+        found = found._replace(vertices_m=on_surfaces(chains, found.vertices_m, found.regions))
+        finer = halved(chains, found.vertices_m, found.triangles, found.on, found.regions, near_m)
         if len(finer[0]) == len(found.vertices_m):
             break
         found = _without_lost_balls(*finer, surfaces, shape.flat_m)
     regions = found.regions
-    curves, vertices_m = with_arcs(found.curves, found.vertices_m, regions, shape.flat_m)
+    curves, vertices_m = with_arcs(found.curves, found.vertices_m, regions, near_m)
     sines = _sines_beside(vertices_m, curves, regions.surfaces)
     return found._replace(vertices_m=vertices_m, curves=curves, sines=sines)
 

@@ -36,7 +36,18 @@ def rounded(by: float) -> Any:
     return work.Shape()
 
 
+def cross_bored() -> Any:
+    """Return a rod with a hole across it: where both sides cross, there is no circle."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
+    hole = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(-10.0, 0.3, 9.0), gp_Dir(1.0, 0.0, 0.0)), 1.2, 20.0).Shape()
+    return BRepAlgoAPI_Cut(rod(), hole).Shape()
+
+
 PARTS = {
+    "bored across": lambda: facets_on_surfaces(triangles_of(cross_bored(), within=True), "part"),
     "cut aslant": lambda: without(rod(), (-45.0, -45.0, 20.0), 0.5),
     "rounded": lambda: facets_on_surfaces(triangles_of(rounded(0.5)), "part"),
 }
