@@ -70,7 +70,7 @@ def test_a_cut_cone_keeps_its_tip_wherever_it_is():
 
 
 def test_a_shaft_with_an_oblique_end_lies_on_its_side(cases):
-    """Nearly level: the lowest place is where a generator ends at the chain of short edges around the oblique end."""
+    """Nearly level: the lowest place is where a generator ends at the chain of short arcs around the oblique end."""
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
 
     shaft = without(BRepPrimAPI_MakeCylinder(7.5, 30.0).Shape(), (-45.0, -45.0, 20.0), 0.47)

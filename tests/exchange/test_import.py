@@ -290,6 +290,7 @@ HOSTILE = {
     ),
     "nested": ("<mujoco>" + 300 * "<body>" + 300 * "</body>" + "</mujoco>", "nested deeper than 200"),
     "attached": (ARM.replace("<asset>", '<asset><model file="/etc/passwd"/>'), "attaches the model '/etc/passwd'"),
+    "xacro expression": ('<robot><link name="$(arg name)"/></robot>', "is xacro, whose macros only ROS's own"),
     "xacro": ('<robot><xacro:include filename="/etc/passwd"/></robot>', "is xacro, whose macros only ROS's own"),
     "package": (
         '<robot><link name="a"><collision><geometry><mesh filename="package://../../etc/passwd"/></geometry></collision>'

@@ -13,7 +13,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cagepose import MissingExtraError, Pose, SceneFileError, load_scene, run, save_scene
+from cagepose import (
+    Box,
+    Cage,
+    Facets,
+    Load,
+    MissingExtraError,
+    Object,
+    Pose,
+    Scene,
+    SceneFileError,
+    load_scene,
+    run,
+    save_scene,
+)
 from cagepose.cli.app import main
 from cagepose.files.meshes import crossings, mesh_file, run_trimesh
 from cagepose.files.meshes.manifolds import Triangles
@@ -331,6 +344,41 @@ def test_solids_of_a_text_stl_are_one_body_where_none_is_asked_for_by_name():
     assert len(surfaces_here(facets.encode(), ".stl", split=True)) == 768
     with pytest.raises(ValueError, match=r"holds 1,538 bodies, more than 1,000; export those that touch alone"):
         surfaces_here(2 * facets.encode(), ".stl", split=True)
+
+
+def of_objects(*objects) -> str:
+    """Return an OBJ file of meshes by their names, each with corners of its own."""
+    lines, n_before = [], 1
+    for name, mesh in objects:
+        lines += [f"o {name}", *(f"v {x} {y} {z}" for x, y, z in mesh.vertices.tolist())]
+        lines += [f"f {a} {b} {c}" for a, b, c in (mesh.faces + n_before).tolist()]
+        n_before += len(mesh.vertices)
+    return "\n".join(lines)
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_objects_that_are_sides_of_one_surface_are_one_body(tmp_path):
+    """As in the pegs of IsaacGymEnvs, whose two ends, wall and roundings are objects of their own."""
+    box = trimesh.creation.box()
+    sides = [(f"mesh{k}", box.submesh([faces], append=True)) for k, faces in enumerate((range(5), range(5, 12)))]
+    apart = trimesh.creation.box((1, 1, 2)).apply_translation((3, 0, 0))
+    (tmp_path / "box.obj").write_text(of_objects(*sides, ("post", apart), ("on it", box.copy())))
+    found = mesh_file.read_solids(tmp_path / "box.obj")
+    assert {name: mesh.body().volume() for name, mesh in found.items()} == pytest.approx(
+        {"mesh0": 1.0, "on it": 1.0, "post": 2.0}
+    )
+
+
+def test_small_facets_are_saved_and_read_again(tmp_path):
+    corners = 1e-5 * np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], float)
+    shape = Facets(corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+    floor = Box((1e-4, 1e-4, 1e-5), Pose((0.0, 0.0, -1e-5)))
+    save_scene(
+        Scene(Object(shapes=[shape]), Cage(shapes=[floor]), [Load("weight", gravity=(0, 0, -1))]),
+        tmp_path / "s.yaml",
+        "m",
+    )
+    assert load_scene(tmp_path / "s.yaml").object.parts[0].flat_m == pytest.approx(1e-14)
 
 
 def test_a_reader_that_takes_too_long_is_stopped(tmp_path, monkeypatch):

@@ -146,7 +146,8 @@ class _Reading:
     def leave_bodies(self) -> None:
         left, taken = NOT_BODIES[self.model.tag], {} if self.is_urdf else TAKEN
         for element in self.model.iter():
-            if element.tag.startswith("xacro:"):
+            expressions = self.is_urdf and any("$(" in value or "${" in value for value in element.attrib.values())
+            if expressions or element.tag.startswith("xacro:"):
                 raise self.refused(XACRO, element)
             element[:] = [child for child in element if child.tag not in left]
             wanted = taken.get(element.tag, element.attrib)

@@ -38,6 +38,8 @@ def _printable(text: str) -> str:
 
 Number = Annotated[float, Field(ge=-LARGEST_NUMBER, le=LARGEST_NUMBER)]
 Positive = Annotated[float, Field(gt=0.0, le=LARGEST_NUMBER), AfterValidator(_not_tiny)]
+Distance = Annotated[float, Field(gt=0.0, le=LARGEST_NUMBER)]
+"""How near is near, which may be far less than any size."""
 NotNegative = Annotated[float, Field(ge=0.0, le=LARGEST_NUMBER)]
 Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Direction = Annotated[Vector, AfterValidator(_not_zero)]

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
-from cagepose.files.schema_base import Mapping, Name, NotNegative, Positive, Size, Vector, wrong
+from cagepose.files.schema_base import Distance, Mapping, Name, NotNegative, Positive, Size, Vector, wrong
 from cagepose.files.schema_surfaces import SurfaceModel
 from cagepose.files.units import LengthUnit
 
@@ -119,7 +119,7 @@ class FacetsModel(Mapping):
         description="Of each triangle the numbers of three corners, from 0 on, counter-clockwise seen from outside.",
         examples=["0 2 1, 0 1 3, 0 3 2, 1 2 3"],
     )
-    flat: Positive | None = Field(
+    flat: Distance | None = Field(
         None,
         description="Corners this near to the plane of a face, or to a surface, lie in it; left out: a"
         " thousand-millionth of the size.",

@@ -17,6 +17,7 @@ from cagepose.files.meshes.kept_facets import keep, kept
 from cagepose.files.meshes.manifolds import Triangles, manifold3d
 from cagepose.files.meshes.mended import mended, place, where_open
 from cagepose.files.meshes.mesh_shapes import MeshShapes, mesh_shapes, tidied
+from cagepose.files.meshes.named_parts import joined_where_open
 from cagepose.files.meshes.odd_facets import is_closed
 from cagepose.files.meshes.run_trimesh import STL_HEADER_BYTES, STL_TRIANGLE, is_text, surfaces
 from cagepose.files.meshes.shells import as_bodies
@@ -105,7 +106,8 @@ def scaled(shape: Shape, factor: float) -> Shape:
 
 
 def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
-    """Return the surfaces of a mesh file by their names, in its unit; ``split=False``: all as one, "".
+    """Return the surfaces of a mesh file by their names, in its unit; ``split=False``: all as one, "". Those that are
+    open and go on in each other are one.
 
     Raises
     ------
@@ -132,7 +134,7 @@ def read_solids(path: Path, *, split: bool = True) -> dict[str, Triangles]:
         raise refused(f"has {n_triangles:,} triangles, more than {MOST_TRIANGLES:,}; simplify it, or export it coarser")
     if not all(np.isfinite(mesh.vertices).all() for mesh in found.values()):
         raise refused("holds points that are no numbers; export it again")
-    return found
+    return joined_where_open(found) if len(found) > 1 else found
 
 
 def _check_whole(stl: bytes) -> None:

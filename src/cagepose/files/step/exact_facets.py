@@ -31,7 +31,7 @@ class OnSurfaces(NamedTuple):
 
 def facets_on_surfaces(solid: dict[str, Any], name: str) -> OnSurfaces:
     """Return a solid's triangles, which stand for its planes, cylinders, cones and spheres; other faces are flat
-    facets, and curves that are no lines or circles are chains of short edges.
+    facets, and curves that are no lines or circles are chains of short arcs.
 
     Parameters
     ----------
@@ -55,5 +55,5 @@ def facets_on_surfaces(solid: dict[str, Any], name: str) -> OnSurfaces:
         off = f"where it is no plane, cylinder, cone or ball, up to {facets:.2g} mm off"
         notes.append(f"{name!r} has {n_facets} {off}; exact: {faces.in_words or 'nothing'}")
     if chains > flat:
-        notes.append(f"{name!r} has chains of short edges where round faces cross, up to {chains:.2g} mm off")
+        notes.append(f"{name!r} has chains of short arcs where round faces cross, up to {chains:.2g} mm off")
     return OnSurfaces(shape, max(facets, chains, solid["off_surfaces"]), tuple(notes))

@@ -21,6 +21,9 @@ CHORDS_OF_CIRCLE = 64
 """Chords of a full circle at least."""
 FARTHEST_APART = 1e-3
 """Fraction of the size. Corners along one edge of two faces are one if they are no farther apart."""
+FARTHEST_OFF = 1e-4
+"""Fraction of the size. A face whose corners are farther off its surface is flat facets: edges that a program wrote as
+splines, such as helices, may be that far off."""
 CHORD_OF_SIZE = 1e-2
 """How far triangles may be from the surface, where that is less than `CHORDS_OF_CIRCLE` gives."""
 
@@ -56,7 +59,9 @@ def triangles_of(solid: Any, *, within: bool = False) -> Data:
         own = np.array([(node.X(), node.Y(), node.Z()) for node in nodes])
         listed = (mesh.Triangle(index) for index in range(1, mesh.NbTriangles() + 1))
         corners = np.array([[triangle.Value(corner) - 1 for corner in order] for triangle in listed])
-        surfaces.append(surface_of_face(face, own[corners]))
+        its = surface_of_face(face, own[corners])
+        is_near = its is not None and np.abs(its.heights(own[corners])).max() <= FARTHEST_OFF * size
+        surfaces.append(its if is_near else None)
         points.append(own)
         triangles.append(n_points[-1] + corners)
         n_points.append(n_points[-1] + len(own))

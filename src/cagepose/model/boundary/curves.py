@@ -55,6 +55,14 @@ class Curve(NamedTuple):
         unit: FloatArray = found / np.linalg.norm(found)
         return unit
 
+    def at(self, shares: FloatArray, vertices_m: FloatArray) -> FloatArray:
+        """Return places of an arc at shares of its way, (n, 3)."""
+        across = vertices_m[self.nodes[0]] - self.center_m
+        across = across - (across @ self.axis) * self.axis
+        angles = (shares * width_of(self, vertices_m))[:, None]
+        places: FloatArray = self.center_m + np.cos(angles) * across + np.sin(angles) * np.cross(self.axis, across)
+        return places
+
 
 class Borders(NamedTuple):
     """Sides of triangles where regions meet, and what follows each where nothing else begins there; -1: nothing."""
@@ -136,9 +144,11 @@ def _curve(
     places = vertices_m[nodes]
     none = np.zeros(3)
     chain = Curve(CHAIN, nodes, left, right, sides, none, none, 0.0)
-    if nodes[0] != nodes[-1] and _is_straight(places, flat_m):
-        return chain._replace(kind=LINE)
     one, other = surfaces[left], surfaces[right]
+    if nodes[0] != nodes[-1] and _is_straight(places, flat_m):
+        middle = (places[:1] + places[-1:]) / 2.0
+        off = max(abs(float(surface.heights(middle)[0])) for surface in (one, other))
+        return chain._replace(kind=LINE) if off <= 2.0 * flat_m else chain
     axis = _common_axis(one, other, flat_m)
     if axis is None or not (one.is_round or other.is_round):
         return chain
@@ -215,17 +225,13 @@ def _radius(one: Surface, other: Surface, center_m: FloatArray, away: float) -> 
 
 
 def pieces_of(curve: Curve, vertices_m: FloatArray) -> list[tuple[int, int]]:
-    """Return indices of nodes from which and to which pieces of a curve lead: a line is one, a chain has one for each
-    edge, and an arc has two or more, of at most 61 degrees.
+    """Return indices of nodes from which and to which pieces of a curve lead: a line is one, and an arc has two or
+    more, if it has as many edges, of at most 61 degrees.
     """
     last = len(curve.nodes) - 1
     if curve.kind == LINE:
         return [(0, last)]
-    if curve.kind == CHAIN:
-        return [(k, k + 1) for k in range(last)]
-    seen = vertices_m[curve.nodes] - curve.center_m
-    steps = np.einsum("ij,j->i", np.cross(seen[:-1], seen[1:]), curve.axis)
-    angles = np.concatenate([[0.0], np.cumsum(np.arctan2(steps, np.einsum("ij,ij->i", seen[:-1], seen[1:])))])
+    angles = np.concatenate([[0.0], np.cumsum(_steps(curve, vertices_m))])
     n_pieces = max(2, math.ceil(float(angles[-1]) / WIDEST_PIECE - 1e-9))
     ends = np.unique(np.abs(angles[:, None] - angles[-1] * np.arange(n_pieces + 1) / n_pieces).argmin(axis=0))
     return list(zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True))
@@ -235,6 +241,12 @@ def width_of(curve: Curve, vertices_m: FloatArray) -> float:
     """Return how far around an arc leads, radians."""
     if curve.is_closed:
         return 2.0 * math.pi
+    return float(_steps(curve, vertices_m).sum())
+
+
+def _steps(curve: Curve, vertices_m: FloatArray) -> FloatArray:
+    """Return the angles between neighbouring nodes of an arc, radians."""
     seen = vertices_m[curve.nodes] - curve.center_m
-    steps = np.einsum("ij,j->i", np.cross(seen[:-1], seen[1:]), curve.axis)
-    return float(np.arctan2(steps, np.einsum("ij,ij->i", seen[:-1], seen[1:])).sum())
+    across = np.einsum("ij,j->i", np.cross(seen[:-1], seen[1:]), curve.axis)
+    angles: FloatArray = np.arctan2(across, np.einsum("ij,ij->i", seen[:-1], seen[1:]))
+    return angles

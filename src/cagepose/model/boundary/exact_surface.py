@@ -1,7 +1,7 @@
 """The boundary of a body whose triangles stand for planes, cylinders, cones and spheres: `exact_block`.
 
 A region of triangles on one surface is a face, trimmed by the curves in which it meets others. A curve is a line, an
-arc, or, as where two cylinders cross, a chain of short edges.
+arc, or, as where two cylinders cross, a chain of short arcs.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ import numpy as np
 from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.union.loops import Border, Loop, find_loops
 from cagepose.model.boundary.blocks import Block
-from cagepose.model.boundary.curves import ARC, LINE, Curve, curves_of, pieces_of
+from cagepose.model.boundary.chains import halved, on_surfaces, with_arcs
+from cagepose.model.boundary.curves import ARC, CHAIN, LINE, Curve, curves_of, pieces_of
 from cagepose.model.boundary.regions import FacePlanes, regions_of
 from cagepose.model.boundary.round_features import ball_of, circle_of, is_within_caps, side_of, tip_of
 from cagepose.model.boundary.surface_corners import corners_of
@@ -25,12 +26,16 @@ from cagepose.model.boundary.surface_regions import Regions, regions_on
 from cagepose.model.boundary.trimmed import Edges, Faces, TrimmedUnion
 from cagepose.model.boundary.union_block import union_block, with_rows
 from cagepose.model.checks import FloatArray, unit_rows
-from cagepose.model.facets import Facets
+from cagepose.model.facets import FLAT, Facets
 from cagepose.model.sides import IntArray, twins_of
 from cagepose.model.surfaces import PLANE, SPHERE, Surface
 
 SMOOTH = 1e-7
 """Sine of the angle between faces beside a curve. With less, one goes over into the other smoothly."""
+IN_PLANE = 1.0 - 1e-6
+"""Cosine between the axis of an arc and the normal of a face that it bounds."""
+HALVINGS = 4
+"""How often edges of chains are halved at most: each time, their arcs are an eighth as far off."""
 
 
 class Piece(NamedTuple):
@@ -55,7 +60,9 @@ class ExactSurface(NamedTuple):
     Attributes
     ----------
     vertices_m, triangles, twins
-        See `Facets` and `cagepose.model.sides.twins_of`.
+        See `Facets` and `cagepose.model.sides.twins_of`. Behind the corners of triangles are places between two arcs.
+    on
+        Which surface of its shape each triangle was told to stand for, (m,); -1: none.
     regions, curves
         See there.
     sines
@@ -65,6 +72,7 @@ class ExactSurface(NamedTuple):
     vertices_m: FloatArray
     triangles: IntArray
     twins: IntArray
+    on: IntArray
     regions: Regions
     curves: list[Curve]
     sines: list[float]
@@ -112,12 +120,32 @@ def _surface_of(placed: _Placed) -> ExactSurface:
     shape = placed.shape
     surfaces = [surface.changed(1.0, shape.pose_body_shape) for surface in shape.surfaces]
     first = np.array([*(surfaces.index(surface) for surface in surfaces), -1])
-    vertices_m, triangles, on, flat_m = shape.nodes_body(), shape.triangles, first[shape.on], shape.flat_m
+    found = _without_lost_balls(shape.nodes_body(), shape.triangles, first[shape.on], surfaces, shape.flat_m)
+    near_m = FLAT * float(np.ptp(found.vertices_m, axis=0).max())
+    for _ in range(HALVINGS):
+        chains = [curve for curve in found.curves if curve.kind == CHAIN]
+        found = found._replace(vertices_m=on_surfaces(chains, found.vertices_m, found.regions))
+        finer = halved(chains, found.vertices_m, found.triangles, found.on, found.regions, near_m)
+        if len(finer[0]) == len(found.vertices_m):
+            break
+        found = _without_lost_balls(*finer, surfaces, shape.flat_m)
+    regions = found.regions
+    curves, vertices_m = with_arcs(found.curves, found.vertices_m, regions, near_m)
+    sines = _sines_beside(vertices_m, curves, regions.surfaces)
+    return found._replace(vertices_m=vertices_m, curves=curves, sines=sines)
+
+
+def _without_lost_balls(
+    vertices_m: FloatArray, triangles: IntArray, on: IntArray, surfaces: Sequence[Surface], flat_m: float
+) -> ExactSurface:
+    """Return a surface with its regions and curves, without sines; balls that are none of our features are facets."""
+    # what corners are off surfaces that are known, those of the other triangles are not off theirs
+    flat_of_others_m = FLAT * float(np.ptp(vertices_m, axis=0).max()) if surfaces else flat_m
     twins = twins_of(vertices_m, triangles)
     kept = np.array([not (surface.kind == SPHERE and surface.radius_m < 0.0) for surface in surfaces])
     while True:
         known = np.where(kept[on] & (on >= 0), on, -1)
-        regions = regions_on(vertices_m, triangles, twins, surfaces, known, flat_m)
+        regions = regions_on(vertices_m, triangles, twins, surfaces, known, flat_of_others_m)
         curves = curves_of(vertices_m, triangles, twins, regions.of_triangles, regions.surfaces, flat_m)
         lost = {
             regions.surfaces[region]
@@ -126,14 +154,13 @@ def _surface_of(placed: _Placed) -> ExactSurface:
             for region in (curve.left, curve.right)
             if regions.surfaces[region].kind == SPHERE
         }
-        found = ExactSurface(vertices_m, triangles, twins, regions, curves, [])
+        found = ExactSurface(vertices_m, triangles, twins, on, regions, curves, [])
         if not lost:
             balls = [region for region, face in enumerate(regions.surfaces) if face.kind == SPHERE]
             lost = {regions.surfaces[region] for region in balls if not is_within_caps(found, region)}
         if not lost:
-            break
+            return found
         kept &= np.array([surface not in lost for surface in surfaces])
-    return found._replace(sines=_sines_beside(vertices_m, curves, regions.surfaces))
 
 
 def _sines_beside(vertices_m: FloatArray, curves: Sequence[Curve], surfaces: Sequence[Surface]) -> list[float]:
@@ -159,7 +186,8 @@ def _sine_beside(vertices_m: FloatArray, curve: Curve, surfaces: Sequence[Surfac
     middles = (start + end) / 2.0
     ways = unit_rows(end - start)
     if curve.kind == ARC:
-        middles, ways = start[:1], curve.tangent(start[0])[None]
+        middles = curve.at(np.array([0.5]), vertices_m)
+        ways = curve.tangent(middles[0])[None]
     one, other = surfaces[curve.left].normals(middles), surfaces[curve.right].normals(middles)
     sines = np.einsum("ij,ij->i", np.cross(one, other), ways)
     return float(sines[np.abs(sines).argmin()]) if (sines > 0.0).all() or (sines < 0.0).all() else 0.0
@@ -226,7 +254,7 @@ def _faces(surface: ExactSurface, pieces: Sequence[Sequence[Piece]], number: int
 def _curvature(surface: ExactSurface, piece: Piece, normal: FloatArray) -> float:
     """Return the curvature of a piece with its face to the left, see `kernels.union.loops.Border`."""
     curve = surface.curves[piece.curve]
-    if curve.kind != ARC:
+    if curve.kind != ARC or abs(float(normal @ curve.axis)) < IN_PLANE:  # over a facet it rises above that
         return 0.0
     start, end = surface.vertices_m[piece.start], surface.vertices_m[piece.end]
     inward = np.cross(normal, end - start)

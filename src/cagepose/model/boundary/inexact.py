@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.model.boundary.curves import CHAIN
+from cagepose.model.boundary.chains import ALONG, exact_beside
+from cagepose.model.boundary.curves import ARC
 from cagepose.model.boundary.exact_surface import ExactSurface, surface_of
 from cagepose.model.facets import Facets
-from cagepose.model.finer import onto
 from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE
 from cagepose.model.wording import counted
 
@@ -43,14 +43,18 @@ def exact_faces(shape: Facets) -> ExactFaces:
 
 
 def off_curves(surface: ExactSurface) -> float:
-    """Return how far chains of short edges are from the curves in which surfaces cross, metres."""
+    """Return how far lines and arcs are from the curves in which surfaces cross, metres."""
     farthest = 0.0
     for curve in surface.curves:
-        known = [surface.regions.surfaces[region] for region in (curve.left, curve.right)]
-        if curve.kind == CHAIN and any(face.is_round for face in known):
-            places = surface.vertices_m[curve.nodes]
-            middles = (places[:-1] + places[1:]) / 2.0
-            farthest = max(farthest, float(np.linalg.norm(onto(middles, known) - middles, axis=1).max()))
+        beside = exact_beside(curve, surface.regions)
+        if not any(face.is_round for face in beside):
+            continue
+        if curve.kind == ARC:
+            places = curve.at(ALONG, surface.vertices_m)
+        else:
+            start, end = surface.vertices_m[curve.nodes[[0, -1]]]
+            places = start + np.outer(ALONG, end - start)
+        farthest = max(farthest, *(float(np.abs(face.heights(places)).max()) for face in beside))
     return farthest
 
 
@@ -59,11 +63,11 @@ def off_surfaces(surface: ExactSurface, shape: Facets) -> float:
     kinds = np.array([face.kind == PLANE for face in surface.regions.surfaces])[surface.regions.of_triangles]
     farthest = 0.0
     for index, known in enumerate(shape.surfaces):
-        lost = kinds & (shape.on == index)
+        lost = kinds & (surface.on == index)
         if known.is_round and lost.any():
-            corners = shape.vertices_m[shape.triangles[lost]]
+            corners = surface.vertices_m[surface.triangles[lost]]
             middles = np.concatenate(
                 [corners.mean(axis=1), *((corners + np.roll(corners, 1, axis=1)) / 2.0).swapaxes(0, 1)]
             )
-            farthest = max(farthest, float(np.abs(known.heights(middles)).max()))
+            farthest = max(farthest, float(np.abs(known.changed(1.0, shape.pose_body_shape).heights(middles)).max()))
     return farthest

@@ -24,6 +24,10 @@ TIP = 1e-9
 """Fraction of a cone's greatest radius: a narrower end is its tip."""
 BEYOND_CAP = 1e-4
 """Cosine: corners of a ball's triangles are no farther beyond its circles."""
+ALONG = np.array((0.0, 0.5, 1.0))
+"""Shares of the way along an arc where normals beside it are asked: beside a part of a circle all are the same."""
+NARROW = 1.0
+"""Radians. Of an arc that is narrower, the box is that around its places, and not that of its circle."""
 GENERATORS = 48
 """Angles at which a line along a side is looked for that is on it for long."""
 FIRST_GENERATOR = 0.7548
@@ -33,22 +37,41 @@ FIRST_GENERATOR = 0.7548
 def circle_of(surface: ExactSurface, index: int, number: int) -> Row:
     """Return a convex arc between two faces as a feature of part ``number``."""
     curve = surface.curves[index]
-    place = surface.vertices_m[curve.nodes[0]]
-    toward = place - curve.center_m
-    toward = toward - (toward @ curve.axis) * curve.axis
-    out = toward / np.linalg.norm(toward)
+    width = width_of(curve, surface.vertices_m)
+    places = curve.at(ALONG, surface.vertices_m)
+    outward = (places - curve.center_m) / curve.radius_m
     angles = []
     for region in (curve.left, curve.right):
-        normal = surface.regions.surfaces[region].normals(place[None])[0]
-        angles.append(math.atan2(float(normal @ curve.axis), float(normal @ out)))
-    low, high = min(angles), max(angles)
-    if high - low > math.pi:
-        low, high = high, low + 2.0 * math.pi
+        normals = surface.regions.surfaces[region].normals(places)
+        angles.append(np.unwrap(np.arctan2(normals @ curve.axis, np.einsum("ij,ij->i", normals, outward))))
+    first, last = sorted(angles, key=lambda found: float(found[0]))
+    if last[0] - first[0] > math.pi:
+        first, last = last, first + 2.0 * math.pi
+    rise = _rise(surface, curve)
     reach = curve.radius_m * np.sqrt(np.maximum(0.0, 1.0 - curve.axis**2))
     box = np.stack([curve.center_m - reach, curve.center_m + reach])
-    width = width_of(curve, surface.vertices_m)
-    numbers = (curve.radius_m, 0.0, 0.0, low, high, 0.0, width)
-    return Row(CIRCLE, number, curve.center_m, curve.axis, out, *numbers, [], curve.radius_m, box)
+    if width < NARROW:
+        bulge = curve.radius_m * (1.0 - math.cos(0.5 * width))
+        box = np.stack([np.maximum(box[0], places.min(axis=0) - bulge), np.minimum(box[1], places.max(axis=0) + bulge)])
+    numbers = (curve.radius_m, 0.0, 0.0, float(first.min()) - rise, float(last.max()) + rise, 0.0, width)
+    least = curve.radius_m * min(1.0, width)
+    return Row(CIRCLE, number, curve.center_m, curve.axis, outward[0], *numbers, [], least, box)
+
+
+def _rise(surface: ExactSurface, curve: Curve) -> float:
+    """Return the greatest angle under which an arc is seen above flat facets beside it, radians: over these a part tips
+    onto it before they lie flat.
+    """
+    start, end = surface.vertices_m[curve.nodes[0]], surface.vertices_m[curve.nodes[-1]]
+    found = 0.0
+    for side in (int(curve.sides[0]), int(surface.twins[curve.sides[0]])):
+        region = int(surface.regions.of_triangles[side // 3])
+        if not surface.regions.is_exact[region]:
+            face, chord = surface.regions.surfaces[region], (end - start) / np.linalg.norm(end - start)
+            opposite = surface.vertices_m[surface.triangles[side // 3, (side + 2) % 3]] - start
+            depth = float(np.linalg.norm(opposite - (opposite @ chord) * chord))
+            found = max(found, math.atan2(float(face.heights(curve.at(ALONG, surface.vertices_m)).max()), depth))
+    return found
 
 
 def _caps(surface: ExactSurface, region: int) -> list[tuple[FloatArray, float]]:

@@ -80,6 +80,7 @@ def _ways(surface: ExactSurface) -> tuple[Ways, Ways, dict[int, float]]:
     does, and whether that is hollow; the same of sides that lead to one, seen from there; and how long the curves are.
     """
     leaving, arriving, lengths = Ways(), Ways(), dict[int, float]()
+    n_corners = int(surface.triangles.max()) + 1  # behind them are places between two arcs, where none turns
     for curve in surface.curves:
         if curve.kind == ARC and curve.is_closed:
             continue
@@ -91,11 +92,11 @@ def _ways(surface: ExactSurface) -> tuple[Ways, Ways, dict[int, float]]:
             start, end = int(curve.nodes[k]), int(curve.nodes[k + 1])
             length = _length(surface, curve, k)
             twin = int(surface.twins[side])
-            if ends[0]:
+            if ends[0] and start < n_corners:
                 way = _way(surface, curve, k, start)
                 found = way, _is_hollow(surface, curve, k, start, way)
                 leaving[side], arriving[twin], lengths[side] = found, found, length
-            if ends[1]:
+            if ends[1] and end < n_corners:
                 way = _way(surface, curve, k, end)
                 found = -way, _is_hollow(surface, curve, k, end, way)
                 leaving[twin], arriving[side], lengths[twin] = found, found, length

@@ -1,0 +1,83 @@
+"""Rods whose round side ends at what is no circle lie on a floor along their side, however they are let go."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from boundary.test_corners_of_solids import too_far, without
+from cagepose import Box, Cage, Load, Object, Pose, Scene, run
+from cagepose.files.step import triangles
+from cagepose.files.step.exact_facets import facets_on_surfaces
+from cagepose.files.step.triangles import triangles_of
+
+pytest.importorskip("OCP")
+RADIUS, LENGTH = 2.0, 30.0
+FLOOR = Box((400.0, 400.0, 100.0), Pose((0.0, 0.0, -50.0)), name="floor")
+
+
+def rod() -> Any:
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+
+    return BRepPrimAPI_MakeCylinder(RADIUS, LENGTH).Shape()
+
+
+def rounded(by: float) -> Any:
+    """Return a rod whose upper rim is rounded: a torus, which is flat facets."""
+    from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
+
+    from cagepose.files.step.fillets import each
+
+    whole = rod()
+    work = BRepFilletAPI_MakeFillet(whole)
+    work.Add(by, next(iter(each("Edge", whole))))
+    return work.Shape()
+
+
+def cross_bored() -> Any:
+    """Return a rod with a hole across it: where both sides cross, there is no circle."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
+    hole = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(-10.0, 0.3, 9.0), gp_Dir(1.0, 0.0, 0.0)), 1.2, 20.0).Shape()
+    return BRepAlgoAPI_Cut(rod(), hole).Shape()
+
+
+PARTS = {
+    "bored across": lambda: facets_on_surfaces(triangles_of(cross_bored(), within=True), "part"),
+    "cut aslant": lambda: without(rod(), (-45.0, -45.0, 20.0), 0.5),
+    "rounded": lambda: facets_on_surfaces(triangles_of(rounded(0.5)), "part"),
+}
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_a_rod_lies_on_its_side(name, cases):
+    shape, rng = PARTS[name]().shape, np.random.default_rng(3)
+    for _ in range(cases(2, 60)):
+        start = Pose((0.0, 0.0, 50.0), rng.standard_normal(4))
+        done = run(
+            Scene(Object(shapes=[shape], pose=start), Cage(shapes=[FLOOR]), [Load("weight", gravity=(0, 0, -9.81))])
+        )
+        along = done.pose.transform(np.array([[0.0, 0.0, 4.0], [0.0, 0.0, 16.0]]))[:, 2]
+        assert done.verdict == "rests"
+        assert along == pytest.approx(RADIUS, abs=1e-6)
+
+
+def test_facets_keep_their_corners_where_round_faces_are_off_theirs(cases):
+    solid = triangles_of(rounded(1.5))
+    solid["off_surfaces"] = 1e-5 * LENGTH
+    rng = np.random.default_rng(5)
+    turns = [Pose(quaternion_wxyz=rng.standard_normal(4)) for _ in range(cases(100, 2000))]
+    assert too_far(facets_on_surfaces(solid, "part"), turns) < 0.01  # its facets lie so far within the torus
+
+
+def test_a_face_whose_corners_are_far_off_its_surface_is_facets(monkeypatch):
+    solid = rounded(0.5)
+    assert sum(k >= 0 for k in triangles_of(solid)["on"]) > 0
+    monkeypatch.setattr(triangles, "FARTHEST_OFF", -1.0)
+    found = triangles_of(solid)
+    assert set(found["on"]) == {-1}
+    assert found["off_others"] == pytest.approx(3e-3, rel=0.01)
