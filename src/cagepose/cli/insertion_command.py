@@ -44,7 +44,7 @@ def insertion_command(
         FILE,
         Parameter(
             help="Page to write as well, such as report.html: all of this with a picture of the mechanism, and the runs"
-            " from just beyond what is permitted, to be played.",
+            " just outside the permitted misalignment, to be played.",
             show_default=False,
         ),
     ] = None,
