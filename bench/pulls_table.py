@@ -162,5 +162,5 @@ def _served(scene_path: Path) -> Iterator[str]:
     command = [sys.executable, "-m", "cagepose", "view", str(scene_path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as viewer:
         assert viewer.stdout is not None
-        yield next(line for line in viewer.stdout if "look at" in line).split("look at ")[1].split()[0]
+        yield next(line for line in viewer.stdout if ": open " in line).split(": open ")[1].split()[0]
         viewer.terminate()

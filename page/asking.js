@@ -42,7 +42,7 @@ export class Asker {
   complain(problems, shown) {
     const told = problems.length > 3 ? [...problems.slice(0, 2), `and ${problems.length - 2} more`] : problems;
     $("problems").replaceChildren(...told.map((problem) => element("p", problem)));
-    if (problems.length) $("problems").append(element("p", `Shown is the last ${shown}.`));
+    if (problems.length) $("problems").append(element("p", `The picture shows the last ${shown}.`));
     $("problems").hidden = !problems.length;
   }
 }

@@ -29,9 +29,9 @@ export class Card {
       const { normal: along, across } = stage.parts(touch);
       const noise = 1e-9 * data.greatestForce;
       const used = touch.friction > 0 && along > noise ? `${Math.round(100 * across / (touch.friction * along))} % of ${+touch.friction.toPrecision(3)}` : "none";
-      lines.push(["force", `${digits(norm(touch.force), noise).toPrecision(4)} ${data.forceUnit}`], ["along, across", `${+digits(along, noise).toPrecision(4)}, ${+digits(across, noise).toPrecision(4)}`],
+      lines.push(["force", `${digits(norm(touch.force), noise).toPrecision(4)} ${data.forceUnit}`], ["normal, friction", `${+digits(along, noise).toPrecision(4)}, ${+digits(across, noise).toPrecision(4)}`],
         ["friction used", used]);
-    } else lines.push(["force", "known where a phase ends"]);
+    } else lines.push(["force", "computed at the end of a phase"]);
     $("cardname").textContent = `${data.names[touch.point]} on ${touch.box}`;
     $("cardlines").replaceChildren(...lines.flatMap(([name, told]) => [element("dt", name), element("dd", told)]));
   }

@@ -79,7 +79,7 @@ export class Gaps {
       return line;
     }));
     const touching = this.moments.get(time)?.filter(({ gap }) => gap === 0).length;
-    $("gapnote").textContent = told === null ? "Known where a motion ends: go there with the arrows below." : told.length ? ""
-      : this.element !== null ? "None is known: it is far off, or something is in between." : touching ? "All that is near touches." : "None was found.";
+    $("gapnote").textContent = told === null ? "Gaps are known at the end of each motion: go there with the arrows below." : told.length ? ""
+      : this.element !== null ? "No gap: it is too far away, or something is in between." : touching ? "Everything nearby touches." : "No gap was found.";
   }
 }

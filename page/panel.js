@@ -22,7 +22,7 @@ export class Panel {
       if (!group || group.dataset.name !== control.group) {
         group = element("fieldset", "");
         group.dataset.name = control.group;
-        group.append(element("legend", control.group === "cage" ? "cage (the start goes with it)" : control.group));
+        group.append(element("legend", control.group === "cage" ? "cage (the start moves with it)" : control.group));
         $("controls").append(group);
       }
       const row = element("label", "");

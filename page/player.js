@@ -42,7 +42,7 @@ try {
   drawing = new Drawing(stage, exaggerations, gaps, $("scene"), $("labels"), {
     covered: () => $("bar").offsetTop + $("bar").offsetHeight, changed: refresh, clicked: (touch, element) => { card.pick(touch); gaps.pick(touch ? null : element()); refresh(); }, grabbed, turned: tellSection });
 } catch (error) {
-  $("trouble").textContent = `No picture: ${error.message}. All else on this page works.`;
+  $("trouble").textContent = `No picture: ${error.message}. The rest of this page works.`;
   $("trouble").hidden = false;
 }
 
@@ -278,7 +278,7 @@ function tell() {
   $("exaggeration").value = data.exaggerations.indexOf(k);
   const { start: from, last } = data.phases[phase()];
   $("exaggeration").disabled = from >= last && from > 0;
-  $("exaggeration").title = $("exaggeration").disabled ? "this phase ends with a long motion, which is shown as it is" : "of the phase on screen";
+  $("exaggeration").title = $("exaggeration").disabled ? "this phase ends with a long motion, which is shown at true scale" : "of the phase on screen";
   const factor = digits(Math.round(look.factor), 0);
   $("badge").textContent = factor === 1 ? "true scale" : `play and gaps exaggerated \u00D7${factor}`;
   $("badge").className = factor === 1 ? "" : "exaggerated";
@@ -302,15 +302,15 @@ function tellDrive(time) {
   $("drive").hidden = !drive;
   if (!drive) return;
   const along = now?.along == null ? "not known" : `${+digits(now.along, NOISE * data.greatestForce).toPrecision(4)} ${drive.unit}`;
-  $("driven").textContent = now ? `${(100 * now.share).toFixed(1)} %: ${along}` : "not yet driven";
+  $("driven").textContent = now ? `${(100 * now.share).toFixed(1)} %: ${along}` : "not driven yet";
   force.draw(data, phase(), now && now.along !== null ? now : null);
 }
 
 function whyNoForces(shot) {
   if (!shot.touches.length) return "nothing touches";
   const row = data.rows[shot.row];
-  if (!row?.verdict || stage.shots[row.last] !== shot) return "known where a phase ends";
-  return row.verdictKind === "failure" ? "not known, since no rest was found" : "none balance the load";
+  if (!row?.verdict || stage.shots[row.last] !== shot) return "computed at the end of a phase";
+  return row.verdictKind === "failure" ? "not known, as no rest was found" : "no forces balance the load";
 }
 
 function wideRow(text) {
@@ -336,7 +336,7 @@ function forceRows(shot) {
     line.append(element("td", `${data.names[touch.point]} on ${touch.box}`), element("td", size.toPrecision(4)), cell);
     return line;
   });
-  return idle ? [...lines, wideRow(`${idle} more touch without a force`)] : lines;
+  return idle ? [...lines, wideRow(`${idle} more without a force`)] : lines;
 }
 
 const toggle = () => (player.playing ? pause() : play());

@@ -55,9 +55,9 @@ def test_a_scene_that_is_no_cage_gives_the_path_out_and_ends_with_0(command: Com
 
 def test_the_way_out_is_told_in_a_line(command: Command, sample: str) -> None:
     path = json.loads(command("play", sample, "--json").out)["cage"]["path"]
-    (line,) = [line for line in command("play", sample).out.splitlines() if line.startswith("way out: ")]
+    (line,) = [line for line in command("play", sample).out.splitlines() if line.startswith("escape path: ")]
     assert line.count(" about (") + line.count(" along (") == len(path)
-    assert line.endswith("; then nothing is ahead")
+    assert line.endswith("; then no contact is ahead")
 
 
 def test_the_tables_name_what_limits_each_end(command: Command) -> None:
@@ -82,7 +82,7 @@ def test_the_table_marks_ends_that_are_proven_and_those_that_are_not_found(capsy
     print_play(replace(found, freedoms={"x": x, "y": y}), (), "mm")
     printed = capsys.readouterr().out
     assert "-1.00136* to 1.00136*" in printed
-    assert "-0.533663 to past 0.533663" in printed
+    assert "-0.533663 to at least 0.533663" in printed
     assert y.high.exact is None
 
 
@@ -111,7 +111,7 @@ def test_the_rests_under_the_loads_are_in_the_document_and_the_report(command: C
     assert [rest["phase"] for rest in rests] == ["weight", "push"]
     assert list(rests[0]["undetermined"]) == ["y", "yaw"]
     assert rests[1]["exact_pose"]["euler_zyx_deg"] == pytest.approx([-0.3322, -0.2131, 0.0012], abs=5e-5)
-    assert "push presses it to" in command("play", RAIL).out
+    assert "push presses the object to" in command("play", RAIL).out
 
 
 @pytest.mark.parametrize(
@@ -120,8 +120,8 @@ def test_the_rests_under_the_loads_are_in_the_document_and_the_report(command: C
         (["--at=1,2"], "--at 1,2: is not three numbers"),
         (["--at=a,b,c"], "--at a,b,c: is not three numbers"),
         (["--at=1,2,nan"], "--at 1,2,nan: is not three numbers"),
-        (["--at=1,2,3", "--direction=0,0,0"], "--direction 0,0,0: has no direction"),
-        (["--direction=0,0,1"], "--direction: says where points go, and there are none"),
+        (["--at=1,2,3", "--direction=0,0,0"], "--direction 0,0,0: is the zero vector"),
+        (["--direction=0,0,1"], "--direction: is for points, and there are none"),
     ],
 )
 def test_bad_flags_end_with_2(command: Command, flags: list[str], message: str) -> None:
@@ -182,7 +182,7 @@ def test_a_scene_of_rollers_has_play_without_bounds(command: Command) -> None:
     assert answer.code == 0
     assert "linear" not in answer.out
     assert "certified" not in answer.out
-    assert "way out: nothing is ahead where it starts" in answer.out
+    assert "escape path: no contact is ahead from the start" in answer.out
 
 
 def test_seated_play_is_asked_of_a_phase(command: Command) -> None:
@@ -193,7 +193,7 @@ def test_seated_play_is_asked_of_a_phase(command: Command) -> None:
     assert left < -1 < 1 < right
     y = document["freedoms"]["y"]["exact"]
     assert y[1] - y[0] < 1e-3  # its back and the ledge hold it
-    assert "play where weight seats it" in command("play", dock, "--seated", "--phase", "weight").out
+    assert "play from the rest of weight" in command("play", dock, "--seated", "--phase", "weight").out
 
 
 @pytest.mark.parametrize(

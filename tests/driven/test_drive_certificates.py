@@ -183,7 +183,7 @@ def test_certificates_of_drives_are_saved_with_a_run_and_checked_by_the_command(
     assert check_certificate(again, load_run(path)) == check_certificate(found, a_run)
     assert main(["check", str(path)]) == 0
     told = capsys.readouterr().out
-    assert "drive: nothing is said of what lies between the places" in told
+    assert "drive: only these places are proven, not the way between them" in told
     assert {"jaws": "blocked: normal", "drawer-jams": "jams: in none of", "insertion": "cannot jam at any of"}[
         name
     ] in told

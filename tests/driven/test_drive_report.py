@@ -20,11 +20,11 @@ def lines_of(scene: Scene) -> list[str]:
 
 def test_a_wedge_is_told_with_its_force_its_work_and_how_far_it_got() -> None:
     lines, force = lines_of(wedge()), exact_wedge_force(0.2, 0.1)
-    assert "# phase rule driven to motion along / about amount reaches" in lines
-    assert "1 lift held 0 mm -" in lines
+    assert "# phase mode driven to motion direction / axis amount new contacts" in lines
+    assert "1 lift balanced 0 mm -" in lines
     assert "2 lift driven 20 mm travel (0, 0, 1) 7.2794 mm" in lines
-    assert "drive all of 20 mm" in lines
-    assert f"driver {force:.6g} N at the end, nowhere more" in lines
+    assert "drive complete, 20 mm" in lines
+    assert f"drive force {force:.6g} N at the end, which is the greatest" in lines
     assert "work 127.067 N mm (friction 55.6559, snaps 0)" in lines
     assert "verdict lift: rests (stable)" in lines
 
@@ -34,9 +34,9 @@ def test_jaws_that_hold_a_block_say_so_and_the_next_phase_is_told_beside() -> No
     assert "2 close driven 62.54 % stands still left pad, right pad" in lines
     text = " ".join(lines)
     assert "drive of close 83.33 % of the way (left 25 mm, right 25 mm); blocked: no motion of the object" in text
-    assert "lets it go on, whatever the friction; the object is held" in text
-    assert "drive of lift all of the way (left 1 mm, right 1 mm)" in lines
-    assert "close: forces of the load alone; a drive that cannot go on presses as hard as it is driven" in lines
+    assert "makes way for it, with any friction" in text
+    assert "drive of lift complete (left 1 mm, right 1 mm)" in lines
+    assert "close: forces of the load alone; the drive can add forces of any size" in lines
     assert "verdict close: blocked, lift: rests (stable)" in lines
 
 
@@ -45,15 +45,15 @@ def test_a_snap_is_an_event_at_its_depth_and_its_energy_stands_with_the_work() -
     assert "4 push free 31 mm travel (0, 0, -1) 30 mm tip" in lines
     assert "6 push driven 50 mm stands still" in lines
     assert "work 38.774 N mm (friction 0, snaps 38.774)" in lines
-    (driver,) = [line for line in lines if line.startswith("driver ")]
-    assert driver.startswith("driver 0 N at the end, at most 1.98")
+    (driver,) = [line for line in lines if line.startswith("drive force ")]
+    assert driver.startswith("drive force 0 N at the end, the greatest is 1.98")
     assert driver.endswith(" mm")
 
 
 def test_of_a_body_that_turns_the_angle_is_told_and_a_moment() -> None:
     lines = lines_of(lever())
-    assert "drive all of 1 mm, 30 deg" in lines
-    assert "driver 0 N at the end, at most 467.067 N mm at 0 mm, 30 deg" in lines
+    assert "drive complete, 1 mm, 30 deg" in lines
+    assert "drive force 0 N at the end, the greatest is 467.067 N mm at 0 mm, 30 deg" in lines
 
 
 def stopping_at(force_n: float) -> Scene:
@@ -67,8 +67,8 @@ def stopping_at(force_n: float) -> Scene:
 @pytest.mark.parametrize(
     ("scene", "verdict", "why"),
     [
-        (stopping_at(1.0), "stops", "; stops: it needs as much force as it may have"),
-        (wedge(wall_friction=5.0), "jams", "; jams: without friction it would go on, with it there is no way on"),
+        (stopping_at(1.0), "stops", "; stops: it has reached the force or moment of stop_at"),
+        (wedge(wall_friction=5.0), "jams", "; jams: it is stopped by friction alone"),
         (
             Scene(jaws().object, jaws().cage, jaws().loads[:1], friction_coefficient=0.3),
             "blocked",
@@ -86,5 +86,5 @@ def test_a_drive_that_stops_before_its_end_is_an_answer(
     text = " ".join(capsys.readouterr().out.split())
     assert f"scene: {verdict}" in text or f"{scene.name}: {verdict}" in text
     assert why in text
-    assert "proof rests as the bodies stand there: the contacts balance the load" in text
-    assert "it is no end" not in text
+    assert "proof rests with the bodies where they stopped: the contacts balance the load" in text
+    assert "not a position of rest" not in text

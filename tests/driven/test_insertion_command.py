@@ -38,10 +38,10 @@ def test_one_page_tells_the_drive_and_both_sides_of_each_freedom(
     assert main(["insertion", plate, "--along", "x,yaw"]) == 0
     lines = printed(capsys)
     assert lines[0] == "pins into a plate, press: rests"
-    assert "drive all of 9 mm" in lines
-    assert "jam ruled out with any friction, wherever it was asked" in lines
-    assert "it cannot jam: with these contacts along this path, at friction 0 and below" in lines
-    assert "How far head may be out of place, one freedom at a time, and what happens just beyond:" in lines
+    assert "drive complete, 9 mm" in lines
+    assert "jam impossible at any friction, at all places checked" in lines
+    assert "it cannot jam with these contacts along this path, at a friction of 0 or less" in lines
+    assert "Permitted misalignment of head, one freedom at a time, and how it fails just outside:" in lines
     assert "x mm -0.8458 0.8458 blocked blocked" in lines
     assert "yaw deg -1.211 1.211 blocked blocked" in lines
     assert len(lines) < 20
@@ -59,8 +59,8 @@ def test_a_drive_that_does_not_get_through_permits_nothing_and_says_where_it_jam
     assert main(["insertion", OURS["drawer-jams"]]) == 0
     lines = printed(capsys)
     assert lines[0] == "drawer that jams, push: jams"
-    assert "jam possible from 0 mm to 0 mm (least friction that lets it: 1.5)" in lines
-    assert "the least friction that lets it is needed at 0 mm" in lines
+    assert "jam possible from 0 mm to 0 mm (it takes a friction of 1.5 or more)" in lines
+    assert "the first place to jam, as friction grows, is at 0 mm" in lines
     assert "y mm - - jams jams" in lines
     assert not any("cannot jam" in line for line in lines)
 
@@ -96,9 +96,9 @@ def test_a_drive_that_does_not_begin_says_why(capsys: pytest.CaptureFixture[str]
     picture = tmp_path / "fall.svg"
     assert main(["insertion", str(tmp_path / "fall.yaml"), "--along", "x", "--picture", str(picture)]) == 0
     lines = printed(capsys)
-    assert "drive it did not begin: fall did not come to rest (escapes)" in lines
+    assert "drive it did not start: fall did not come to rest (escapes)" in lines
     assert "x mm - - escapes escapes" in lines
-    assert "the drive did not begin" in picture.read_text(encoding="utf-8")
+    assert "the drive did not start" in picture.read_text(encoding="utf-8")
     assert main(["insertion", str(tmp_path / "fall.yaml"), "--along", "x", "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert (document["drive"], document["least_jam_share"], document["jam_friction"]["least"]) == (None, None, [])
@@ -142,7 +142,7 @@ def test_the_picture_has_force_jam_friction_and_a_bar_for_each_freedom(plate: st
     found = insertion(cagepose.load_scene(plate), along=["y", "yaw"])
     figure = insertion_figure(found)
     force, friction, shifts, turns = figure.axes
-    assert force.get_ylabel() == "driver [N]"
+    assert force.get_ylabel() == "drive force [N]"
     assert friction.get_xlabel() == "head, travelled [mm]"
     for panel, name, unit in ((shifts, "y", 1e3), (turns, "yaw", math.degrees(1.0))):
         (bar,) = panel.patches

@@ -255,7 +255,7 @@ def test_a_model_that_comes_with_mujoco_is_read(capsys, tmp_path):
     assert main(["import", str(model), "--object", "head", "-o", str(tmp_path / "x.yaml")]) == 0
     assert "note: left out: 'geom 12', a height field; give its surface as a mesh" in capsys.readouterr().out
     assert main(["run", str(tmp_path / "x.yaml")]) == 0
-    assert "warning: the source of this scene has geom 12, too" in capsys.readouterr().out
+    assert "warning: the source of this scene also has geom 12" in capsys.readouterr().out
 
 
 @pytest.mark.usefixtures("here")

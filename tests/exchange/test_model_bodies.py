@@ -200,7 +200,7 @@ def test_what_the_object_is_deep_in_is_left_out_and_each_run_warns(tmp_path, cap
     )
     scene = load_scene("cube.yaml")
     assert scene.left_out == ("table",)
-    warning = "the source of this scene has table, too, which is left out here"
+    warning = "the source of this scene also has table, which is left out here"
     for command in (["run", "cube.yaml"], ["check", "cube.yaml"]):
         main(command)
         shown = capsys.readouterr()

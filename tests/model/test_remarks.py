@@ -36,8 +36,8 @@ def test_of_our_scenes_there_is_nothing_to_remark(path: Path) -> None:
 REMARKED = {
     "parts of the source that are left out": (
         scene(left_out=["terrain", "finger"]),
-        "the source of this scene has terrain, finger, too, which is left out here: where it would touch the object,"
-        " nothing holds that is shown",
+        "the source of this scene also has terrain, finger, which is left out here: where it would touch the object,"
+        " the result is wrong",
     ),
     "friction above what there is": (
         scene(friction_coefficient=3.0),
@@ -71,8 +71,8 @@ REMARKED = {
             ),
             [DOWN],
         ),
-        "pin and the hole hole1 are equally wide, so that rounding decides whether one goes into the other; give the"
-        " clearance that the real ones have",
+        "pin and the hole hole1 have the same radius, so that rounding decides whether one goes into the other; give"
+        " them the clearance of the real parts",
     ),
     "millimetres in the place of metres": (
         scene(scale=1000.0),

@@ -110,7 +110,7 @@ def test_a_ball_amid_six_balls_goes_between_three_of_them_and_turns_for_ever():
         assert (ends.low.exact, ends.high.exact) == pytest.approx((-farthest * MM, farthest * MM), rel=1e-9)
     assert all(found.freedoms[name].high.is_open for name in ("roll", "pitch", "yaw"))
     assert found.cage.verdict == "not certified"
-    assert found.cage.reason.startswith("bounds are known of the object's boxes alone")
+    assert found.cage.reason.startswith("bounds can be proven only for boxes of the object")
 
 
 def test_the_way_out_is_free_and_leads_out():

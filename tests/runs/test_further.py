@@ -85,7 +85,7 @@ def test_a_run_without_a_rest_to_go_on_from_is_refused_and_one_without_an_end_is
     with pytest.raises(ValueError, match="no phase can begin there"):
         further(fallen, 1, Load("more", gravity=(0, 0, -1)))
     gripped = run(load_scene(SCENES / "grip.yaml"))
-    with pytest.raises(TimeoutError, match="no end was found within"):
+    with pytest.raises(TimeoutError, match="no rest was found within"):
         pulled(gripped, [], np.array([13.0, 0.0, 0.0]), np.zeros(3), within_s=0.01)
 
 

@@ -51,7 +51,7 @@ def test_a_run_is_one_native_call_whatever_is_read_of_it(monkeypatch, method):
 
 @pytest.mark.parametrize(
     ("verdict", "says"),
-    [(STALLED, "no step got on that keeps the contacts of C2, C4, "), (LIMIT, "it still moved after 3000")],
+    [(STALLED, "no step was found that keeps the contacts of C2, C4, "), (LIMIT, "it still moved after 3000")],
 )
 def test_a_failed_run_says_why_and_what_it_left_out(verdict, says):
     """Such runs are made, by another code than the kernel wrote, before anything is read: no scene of ours fails."""

@@ -83,13 +83,13 @@ def test_the_loose_end_may_be_the_lower_one(scene: Path) -> None:
 def test_a_wish_that_is_kept_everywhere_or_nowhere_is_said_so(scene: Path) -> None:
     everywhere = found(scene, [-0.5, 0.5], "position.z < 9", runs=64)
     assert everywhere.loosest == 0.5
-    assert "parameters.a = 0.5, the loose end, still keeps yield >= 90.00 %; looser values were not" in str(everywhere)
+    assert "parameters.a = 0.5, the loose end, still meets yield >= 90.00 %; looser values were not" in str(everywhere)
     nowhere = found(scene, [-0.5, 0.5], "position.z < -9", runs=64)
     assert nowhere.loosest is None
-    assert "no parameters.a from -0.5 to 0.5 keeps yield >= 90.00 %: at best 0 %, at -0.5" in str(nowhere)
+    assert "no parameters.a from -0.5 to 0.5 meets yield >= 90.00 %: at best 0 %, at -0.5" in str(nowhere)
     few = found(scene, [-0.5, 0.5], "position.z < 9", {"yield": 0.99}, runs=64)
     assert few.trade_off.between == (None, 0.5)
-    assert "no value keeps it with 95 % confidence by 64 runs: ask for more" in few.sentence()
+    assert "no value does with 95 % confidence in 64 runs: set more runs" in few.sentence()
 
 
 def test_a_wish_that_tighter_values_do_not_keep_is_said_so(scene: Path) -> None:
@@ -97,7 +97,7 @@ def test_a_wish_that_tighter_values_do_not_keep_is_said_so(scene: Path) -> None:
     ((tight, loose),) = results.trade_off.kept
     assert (tight, loose) == pytest.approx((-0.2 + TENTH, 0.2 - TENTH), abs=3e-3)
     assert (results.loosest, results.trade_off.is_monotone) == (loose, False)
-    assert f"; not all tighter values keep it: {tight:.5g} to {loose:.5g} alone" in results.sentence()
+    assert f"; not all tighter values do: only {tight:.5g} to {loose:.5g}" in results.sentence()
 
 
 def test_the_capture_range_about_the_nominal_value_is_that_of_the_closed_form(scene: Path) -> None:
@@ -161,7 +161,7 @@ def test_the_command_prints_and_writes_what_python_finds(capsys: pytest.CaptureF
     assert load_scene("out/loosest.yaml").cage.pose_world_cage.position_m[2] == results.loosest
     assert run(load_scene("out/loosest.yaml")).pose.position_m[2] == pytest.approx(results.loosest + 0.5)
     assert Path("out/design.png").read_bytes()[:4] == b"\x89PNG"
-    assert b"wish: yield" in Path("out/design.svg").read_bytes()
+    assert b"target: yield" in Path("out/design.svg").read_bytes()
     assert main(["design", "design.yaml", "--out", "out", "--json"]) == 0  # over its own files
     assert json.loads(capsys.readouterr().out) == results.document()
     Path("out/design.svg").write_text("mine", encoding="utf-8")
@@ -216,6 +216,6 @@ def test_a_grid_of_samples_leaves_out_what_is_chosen(scene: Path) -> None:
                    accept="position.z < 0.7").run()  # fmt: skip
     assert {round(3 * point.reached) for point in results.trade_off.points} == {0, 1, 2, 3}
     assert results.loosest == pytest.approx(0.2, abs=1e-3)
-    assert results.sentence().endswith("no value keeps it with 95 % confidence by 3 runs: ask for more")
+    assert results.sentence().endswith("no value does with 95 % confidence in 3 runs: set more runs")
     with pytest.raises(SceneFileError, match=r"design: sample: is a Latin hypercube|design:.*sample: is a Latin"):
         make(scene, {"parameters.a": [0, 1]}, {"yield": 0.6}, NORMAL, {"method": "latin hypercube", "runs": 2**30})

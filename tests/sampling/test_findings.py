@@ -246,7 +246,7 @@ def test_a_failed_run_is_never_good_and_is_told(
     assert numbers["chosen_runs"][0]["run"] == 7
     assert "1 run failed (<code>limit</code>)" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert main(["study", "show", str(tmp_path / "out")]) == 0
-    assert "1 failed (limit): without an answer, and not good" in capsys.readouterr().out
+    assert "1 failed (limit): they have no result and count as not good" in capsys.readouterr().out
 
 
 def test_the_design_of_the_indices_is_that_of_salib() -> None:
@@ -414,7 +414,7 @@ def test_the_page_stands_alone_and_holds_the_numbers(run_study: RunStudy, tmp_pa
     assert page.count("<svg") == 5
     reasons = {one["missing"] for one in numbers["sensitivities"]} - {None}
     assert page.count("No indices of") == len(reasons) > 0
-    for text in ("Yield", "Tolerances", "What matters", "Capture map", "Contacts", "worst-1.yaml", "tip_z"):
+    for text in ("Yield", "Tolerances", "Sensitivities", "Capture map", "Contacts", "worst-1.yaml", "tip_z"):
         assert text in page
     assert json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8")) == numbers
     assert StudyResults(tmp_path / "out").study.model.accept is not None

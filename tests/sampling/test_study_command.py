@@ -56,7 +56,7 @@ def test_a_study_prints_what_its_page_says_and_show_says_it_again(
     numbers = json.loads(Path("out/report.json").read_text(encoding="utf-8"))
     share = numbers["yield"]["share"]
     assert f"yield {percent(share)}, between" in out
-    assert "what matters for accepted" in out
+    assert "Sobol indices of accepted" in out
     assert "largest box of accepted runs: cage.pose.euler_zyx_deg[1]" in out
     n_beside = len(list(Path("out").glob("[!.]*.*"))) - len(["report.html", "study.yaml", "scene.yaml"])
     assert out.splitlines()[-1] == f"wrote {Path('out/report.html')} and {n_beside} files beside it"
@@ -124,7 +124,7 @@ def rows_as_csv(capsys: pytest.CaptureFixture[str]) -> None:
         (("study.yaml", "other.yaml", "--out", "o"), "too many arguments: other.yaml"),
         (("show",), "study show needs the folder"),
         (("show", "out", "--resume"), "study show runs nothing"),
-        (("study.yaml", "--out", "o", "--csv", "x.csv"), "--csv writes the rows of a folder that is there"),
+        (("study.yaml", "--out", "o", "--csv", "x.csv"), "--csv works with study show alone"),
         (("show", "out", "--csv", "x.csv", "--json"), "--csv prints no report; leave --json out"),
         (("study.yaml", "--out", "o", "--workers", "0"), "--workers is 0; give 1 or more"),
         (("none.yaml", "--out", "o"), "none.yaml: does not exist"),

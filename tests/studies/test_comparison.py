@@ -13,7 +13,7 @@ from cagepose import Box, Cage, Load, Object, Pose, Scene, SceneError, compare
 from cagepose.kernels.quasistatic import step as quasistatic
 from cagepose.kernels.stepwise import run as stepwise
 from cagepose.runs.run import FAILURES, STOPPED
-from cagepose.studies.comparison import ENDS, GROUNDS, Variant, parting_of
+from cagepose.studies.comparison import ENDS, GROUNDS, METRICS, Variant, parting_of
 from rails import rail_scene
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
@@ -36,14 +36,14 @@ def test_both_metrics_run_without_friction_and_with_that_of_the_papers_rules():
     comparison = compare(block())
     assert [variant.label for variant in comparison.variants] == [
         "stepwise",
-        *(f"quasistatic, {metric}, friction {mu}" for mu in ("0", "0.1003") for metric in ("release", "drag")),
+        *(f"quasistatic, {how}, friction {mu}" for mu in ("0", "0.1003") for how in ("by inertia", "by drag")),
     ]
     assert [variant.friction for variant in comparison.variants] == pytest.approx(
         [math.tan(0.1), 0, 0] + 2 * [math.tan(0.1)]
     )
     for variant in comparison.variants[1:]:
         assert variant.run.scene.friction_coefficient == variant.friction
-        assert variant.label.split(", ")[1] == variant.run.scene.metric
+        assert variant.label.split(", ")[1] == METRICS[variant.run.scene.metric]
 
 
 def test_a_scene_without_friction_is_run_once_with_each_metric():
@@ -73,7 +73,8 @@ def test_where_the_rules_end_and_the_mechanics_goes_on_the_ends_are_named():
     assert (release.number, release.first_number) == (1, None)
     assert release.reason == (
         "stepwise ends: stable (no turn about two of its contacts is free);"
-        " quasistatic travels along (0.866, 0, -0.5) (slide: the contacts cannot hold it, and those that carry slide)"
+        " quasistatic travels along (0.866, 0, -0.5) (sliding: the contacts do not balance the"
+        " load, and those with a force slide)"
     )
 
 
@@ -90,7 +91,7 @@ def test_where_the_mechanics_ends_its_proof_is_the_ground():
 def test_a_fall_is_told_as_a_travel_though_rounding_turns_the_object():
     (release, drag) = compare(scene_of("wedge"), [0.18]).partings
     for parting in (release, drag):
-        assert "quasistatic travels along (0, 0, -1) (slide: " in parting.reason
+        assert "quasistatic travels along (0, 0, -1) (sliding: " in parting.reason
 
 
 def test_a_balance_on_a_needle_is_not_called_a_turn_that_is_blocked():
@@ -119,7 +120,7 @@ def test_a_rest_and_an_escape_from_one_pose_part_at_the_end():
     parting = parting_of(resting, leaving)
     assert parting is not None
     assert (parting.label, parting.number, parting.first_number) == ("leaving", None, None)
-    assert parting.reason.endswith("; quasistatic ends: escapes (nothing is ahead)")
+    assert parting.reason.endswith("; quasistatic ends: escapes (no contact is ahead)")
 
 
 def test_a_later_phase_is_named_where_only_it_differs():

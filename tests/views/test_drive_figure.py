@@ -45,7 +45,7 @@ def test_the_force_of_a_truss_is_drawn_up_to_where_it_snaps_and_is_zero_beyond(r
     assert [text.get_text() for text in touching.get_yticklabels()][-1] == "tip"
     assert bars_of(touching)[-1] == (4, pytest.approx(1.0), pytest.approx(31.0))
     assert way.lines[2].get_ydata()[[0, -1]] == pytest.approx([0.0, -60.0])
-    assert force.get_ylabel() == "driver's force [N]"
+    assert force.get_ylabel() == "drive force [N]"
     assert drive_figure(run).axes[3].get_xlabel() == "pusher, travelled [mm]"
 
 
@@ -65,7 +65,7 @@ def test_moments_are_in_the_unit_of_the_figure(runs) -> None:
     in_mm, in_inches = (drive_figure(runs["lever"], unit).axes[0] for unit in ("mm", "in"))
     assert np.nanmax(curve_of(in_mm)[:, 1]) == pytest.approx(467.067, rel=1e-5)
     assert np.nanmax(curve_of(in_inches)[:, 1]) == pytest.approx(467.067 / 25.4, rel=1e-5)
-    assert in_mm.get_ylabel() == "driver's force [N], moment [N mm]"
+    assert in_mm.get_ylabel() == "drive force [N], moment [N mm]"
 
 
 def test_what_no_body_moved_for_has_no_force(runs) -> None:

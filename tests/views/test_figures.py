@@ -104,7 +104,7 @@ def test_each_event_has_its_snapshot_and_the_weight_its_view(sample):
         "1. gravity, A-1: travel 5 mm",
         "2. gravity, A-2: turn 28.96 deg",
         "3. gravity, A-3: turn 51.32 deg",
-        "end of gravity, seen along it:\nthe contacts balance it nowhere",
+        "end of gravity, seen along it:\nno CoG is balanced",
     ]
     view = figure.axes[-1]
     assert (view.get_xlabel(), view.get_ylabel()) == ("x [mm]", "y [mm]")
@@ -218,7 +218,7 @@ def test_no_title_is_longer_than_its_panel():
     found = run(rail_scene(misalignment_zyx=(0.0, np.radians(0.1), 0.0)), method="quasistatic")
     titles = [panel.get_title() for panel in event_figure(found).axes]
     assert max(len(line) for title in titles for line in title.splitlines()) <= 60
-    assert any(title.startswith("5. push, slide: screw ") for title in titles)
+    assert any(title.startswith("5. push, sliding: screw ") for title in titles)
 
 
 @pytest.mark.parametrize("name", ["connector"])

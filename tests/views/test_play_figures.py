@@ -38,7 +38,7 @@ def test_an_open_end_is_an_arrow_and_no_bar_is_certified() -> None:
     assert len(bars) == 6
     assert any(line.get_marker() == ">" for line in figure.axes[0].lines)
     below = figure.axes[3]  # x and z
-    assert below.get_title() == "no end along the arrows"
+    assert below.get_title() == "unlimited along the arrows"
     assert len(below.texts) == 24  # as many directions, all open
     assert min(below.get_xlim()[1], below.get_ylim()[1]) > 1.0  # not the few hundredths of an empty picture
 

@@ -41,15 +41,15 @@ COMMANDS = {
     ),
     "compare": (
         "cagepose.cli.compare_command:compare_command",
-        "Run a scene by mechanics and by the paper's rules: where do the two part?",
+        "Run a scene by mechanics and by the paper's rules: where do the two differ?",
     ),
     "play": (
         "cagepose.cli.play_command:play_command",
-        "How loose the part is: how far it goes each way, what limits it, can it get out.",
+        "How much play the part has in each direction, what limits it, and whether it can get out.",
     ),
     "insertion": (
         "cagepose.cli.insertion_command:insertion_command",
-        "How far a drive gets, with which force, where it could jam, how far it may be out of place.",
+        "How far a drive gets, with which force, where it could jam, and the misalignment it permits.",
     ),
     "check": (
         "cagepose.cli.check_command:check_command",
@@ -62,11 +62,11 @@ COMMANDS = {
     ),
     "study": (
         "cagepose.cli.study_command:study_command",
-        "Run a scene many times with numbers that vary: yield, tolerances, which number matters.",
+        "Run a scene many times with numbers that vary: yield, tolerances, sensitivities.",
     ),
     "design": (
         "cagepose.cli.design_command:design_command",
-        "Find the loosest value of a number that keeps a yield or a capture range.",
+        "Find the loosest value of a number that still gives a wanted yield or capture range.",
     ),
     "reproduce": (
         "cagepose.cli.reproduce_command:reproduce_command",
@@ -78,11 +78,11 @@ COMMANDS = {
     ),
     "import": (
         "cagepose.cli.import_command:import_command",
-        "Make a scene of MJCF, URDF, STEP, STL, OBJ, PLY or GLB files, or join files of single parts.",
+        "Make a scene from an MJCF, URDF, STEP, STL, OBJ, PLY or GLB file, or from several files of parts.",
     ),
     "crosscheck": (
         "cagepose.cli.crosscheck_command:crosscheck_command",
-        "Run a scene in MuJoCo, too: do the two end at the same poses, and if not, why?",
+        "Run a scene in MuJoCo as well: does it end at the same poses, and if not, why?",
     ),
     "schema": ("cagepose.cli.schema_command:schema_command", "Print the JSON Schema of scene files, for editors."),
     "init": (
@@ -239,7 +239,7 @@ def overview() -> str:
             f"  {'--help':{width}}  Print this, or the help of a command: cagepose run --help",
             "",
             "Begin with: cagepose init myscene, then cagepose run myscene.yaml",
-            "Let your shell complete all this: cagepose --install-completion",
+            "Completion with the tab key in your shell: cagepose --install-completion",
             "",
         )
     )

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def check_command(run_or_scene: RunOrSceneArgument, /, *, set_values: SetOption = ()) -> int:
-    """Print what a scene holds, or every problem found; of a saved run, what its certificates prove."""
+    """Print a summary of a scene, or every problem found in it; of a saved run, what its certificates prove."""
     from cagepose.errors import printable
     from cagepose.files.read import looks_like_run
     from cagepose.files.scene_file import read_scene_file

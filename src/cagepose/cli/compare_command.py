@@ -20,15 +20,15 @@ def compare_command(
     friction: Annotated[
         tuple[float, ...],
         Parameter(
-            help="A coefficient of friction to run the mechanics with; may be given several times. Left out: none, and"
-            " the scene's own.",
+            help="A coefficient of friction for the mechanics; may be given several times. Left out: 0 and the scene's"
+            " own.",
             negative=(),
         ),
     ] = (),
     set_values: SetOption = (),
     json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the tables.")] = False,
 ) -> int:
-    """Print final poses and verdicts of all variants, and where each parts from the paper's rules."""
+    """Print final poses and verdicts of all variants, and where each differs from the paper's rules."""
     from cagepose.errors import SceneFileError
     from cagepose.files.scene_file import read_scene_file
 

@@ -1,4 +1,4 @@
-"""A comparison as text: a table of the variants, then where they part."""
+"""A comparison as text: a table of the variants, then where they differ."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ def print_comparison(comparison: Comparison, unit: LengthUnit) -> None:
         table.add_row(*row)
     blocks = []
     for (where, reason), labels in _partings(comparison).items():
-        part = "parts" if len(labels) == 1 else "part"
-        blocks.append("\n".join((*labels, f"    {part} from stepwise {where}: {reason}")))
+        differ = "differs" if len(labels) == 1 else "differ"
+        blocks.append("\n".join((*labels, f"    {differ} from stepwise {where}: {reason}")))
     n_others = len(comparison.variants) - 1
     together = n_others - len(comparison.partings)
     if together:
-        blocks.append(f"{together} of {n_others} {'goes' if together == 1 else 'go'} the way of stepwise to its end")
+        blocks.append(f"{together} of {n_others} {'has' if together == 1 else 'have'} the same events as stepwise")
     name = comparison.variants[0].run.scene.name
     shown = table if fits(table, screen_width()) else _list(rows, unit)
     print_all(Text(name), "", shown, "", Text("\n\n".join(blocks)))
@@ -52,8 +52,8 @@ def _partings(comparison: Comparison) -> dict[tuple[str, str], list[str]]:
     """Variants that part at one place for one reason are told together."""
     found: dict[tuple[str, str], list[str]] = {}
     for parting in comparison.partings:
-        place = "the end" if parting.first_number is None else f"event {parting.first_number}"
-        found.setdefault((f"at {place} of {parting.phase!r}", parting.reason), []).append(parting.label)
+        place = "at the end" if parting.first_number is None else f"from event {parting.first_number} on"
+        found.setdefault((f"in {parting.phase!r} {place}", parting.reason), []).append(parting.label)
     return found
 
 

@@ -63,7 +63,7 @@ def _print(found: Crosscheck, unit: LengthUnit, engine: str) -> None:
         return f"{float(from_metres(metres, unit)):.2g} {unit}"
 
     run = found.run
-    table = plain_table("phase", "cagepose", engine, "apart", "agree up to", "penetration", "")
+    table = plain_table("phase", "cagepose", engine, "difference", "tolerance", "penetration", "")
     lines = list[str]()
     for phase in found.phases:
         there = phase.mujoco

@@ -21,14 +21,14 @@ def design_command(
     /,
     *,
     out: Annotated[
-        FileName | None, FILE, Parameter(help="Folder for numbers, curve and scene; made if it is not there.")
+        FileName | None, FILE, Parameter(help="Folder for numbers, curve and scene; created if it does not exist.")
     ] = None,
     workers: Annotated[
-        int | None, Parameter(help="Threads, or processes where scenes are built row by row; left out: all cores.")
+        int | None, Parameter(help="How many threads or processes to use; left out: one for each core.")
     ] = None,
     json: Annotated[bool, Switch, Parameter(help="Print what was found as JSON instead of a table.")] = False,
 ) -> int:
-    """Print what is reached at each value that was asked, and the loosest one that keeps the wish."""
+    """Print what each value that was tried gives, and the loosest one that meets the target."""
     if workers is not None and workers < 1:
         sys.stderr.write(f"cagepose: --workers is {workers}; give 1 or more. See: cagepose design --help\n")
         return 2
@@ -72,7 +72,7 @@ def _print(results: DesignResults) -> None:
     study, wish = results.file.study, results.file.model.wish
     has_interval = wish.share is not None
     columns = ("yield", "95 % interval") if has_interval else ("capture range",)
-    table = plain_table(study.varied[-1].key, *columns, "keeps the wish")
+    table = plain_table(study.varied[-1].key, *columns, "meets the target")
     for point in results.trade_off.points:
         low, high = (results.reached_text(limit) for limit in (point.low, point.high))
         limits = (f"{low} to {high}",) if has_interval else ()

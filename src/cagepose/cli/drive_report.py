@@ -14,9 +14,9 @@ from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.run import FAILURES, STOPPED, PhaseRun, Run
 
 WHY = {
-    "blocked": "blocked: no motion of the object lets it go on, whatever the friction; the object is held",
-    "jams": "jams: without friction it would go on, with it there is no way on",
-    "stops": "stops: it needs as much force as it may have",
+    "blocked": "blocked: no motion of the object makes way for it, with any friction",
+    "jams": "jams: it is stopped by friction alone",
+    "stops": "stops: it has reached the force or moment of stop_at",
 }
 """Why a drive did not get to its end, in words."""
 LEAST_FORCE, LEAST_WORK = 1e-12, 1e-8
@@ -37,10 +37,10 @@ def drive_lines(run: Run, words: LengthWords) -> list[tuple[str, str]]:
 
 
 def _pressed(name: str, body: BodyRun, words: LengthWords) -> str:
-    """Return ``pad went on by 3.5 mm and presses with 12 N``; what is not at rest does not press."""
+    """Return ``pad moved by 3.5 mm and presses with 12 N``; what is not at rest does not press."""
     way = words.lengths([abs(body.travel_m)])
-    went = "gave way by" if body.travel_m < 0.0 else "went on by"
-    told = f"{name} stays where it is" if way == "0" else f"{name} {went} {way} {words.unit}"
+    went = "was pushed back by" if body.travel_m < 0.0 else "moved by"
+    told = f"{name} does not move" if way == "0" else f"{name} {went} {way} {words.unit}"
     return f"{told} and presses with {short(body.along, 6, 1e-12)} N" if body.force_n.any() else told
 
 
@@ -50,7 +50,7 @@ def lines_of_phase(run: Run, place: int, words: LengthWords, *, is_alone: bool) 
     of_phase = "" if is_alone else f" of {phase.name}"
     drive, why = phase.drive, _why(phase)
     if drive is None:
-        yield f"drive{of_phase}", f"it did not begin{why}"
+        yield f"drive{of_phase}", f"it did not start{why}"
         return
     yield f"drive{of_phase}", f"{_way(phase, load, words)}{why}"
     unit = "N" if force_unit(run.scene, load) == "N" else "load"
@@ -62,8 +62,8 @@ def lines_of_phase(run: Run, place: int, words: LengthWords, *, is_alone: bool) 
         return f"{short(value, 6, LEAST_FORCE * size)} {unit}"
 
     at_end, most = along(drive.along, drive.share), along(drive.greatest_along, drive.greatest_share)
-    where = f"at most {most} at {words.depth(load, drive.greatest_share)}"
-    yield "driver", f"{at_end} at the end, {'nowhere more' if most == at_end else where}"
+    where = f"the greatest is {most} at {words.depth(load, drive.greatest_share)}"
+    yield "drive force", f"{at_end} at the end, {'which is the greatest' if most == at_end else where}"
     least = LEAST_WORK * size * run.scene.size_m
     works = [words.scaled(work, least) for work in (drive.work_j, drive.friction_j, drive.snaps_j)]
     yield "work", f"{works[0]} {unit} {words.unit} (friction {works[1]}, snaps {works[2]})"
@@ -74,10 +74,10 @@ def _jam(drive: DriveRun, load: Load, words: LengthWords) -> str:
     """Return between which depths it could jam, and with how much friction."""
     least = drive.critical_jam_friction
     if least is None:
-        return "ruled out with any friction, wherever it was asked"
-    friction = f"least friction that lets it: {short(least, 6, 1e-9)}"
+        return "impossible at any friction, at all places checked"
+    friction = f"it takes a friction of {short(least, 6, 1e-9)} or more"
     if not drive.jam_possible:
-        return f"ruled out with this friction, wherever it was asked ({friction})"
+        return f"impossible at this friction, at all places checked ({friction})"
     ways = ", ".join(f"{words.depth(load, begins)} to {words.depth(load, ends)}" for begins, ends in drive.jam_possible)
     return f"possible from {ways} ({friction})"
 
@@ -89,14 +89,14 @@ def _why(phase: PhaseRun) -> str:
 
 
 def _way(phase: PhaseRun, load: Load, words: LengthWords) -> str:
-    """Return ``12.5 mm of 25 mm (50 %)``, or ``all of 25 mm``; of several bodies how far each got."""
+    """Return ``12.5 mm of 25 mm (50 %)``, or ``complete, 25 mm``; of several bodies how far each got."""
     assert phase.drive is not None
     share = phase.drive.share
     if len(load.drive) == 1:
         whole = words.depth(load, 1.0)
-        return f"all of {whole}" if share == 1.0 else f"{words.depth(load, share)} of {whole} ({_percent(share)})"
+        return f"complete, {whole}" if share == 1.0 else f"{words.depth(load, share)} of {whole} ({_percent(share)})"
     ways = ", ".join(f"{name} {words.way(legs, share)}" for name, legs in load.drive.items())
-    return f"all of the way ({ways})" if share == 1.0 else f"{_percent(share)} of the way ({ways})"
+    return f"complete ({ways})" if share == 1.0 else f"{_percent(share)} of the way ({ways})"
 
 
 def _percent(share: float) -> str:

@@ -12,7 +12,7 @@ from cagepose.cli.console import fits
 from cagepose.cli.styles import plain_table, verdict_style
 from cagepose.files.words import LengthWords, line_of, names_of
 from cagepose.model.load import Load
-from cagepose.runs.changes import Change, changes_of
+from cagepose.runs.changes import Change, changes_of, mode_of
 from cagepose.runs.run import AT_REST, Run
 
 DRIVEN = "driven"
@@ -31,11 +31,12 @@ def _table(run: Run, words: LengthWords, *, is_verbose: bool) -> Table:
     rows = list(changes_of(run))
     has_left, loads = any(row.left for row in rows), _driven(run)
     to = ["driven to"] if loads else []
-    table = plain_table("#", "phase", "rule", *to, "motion", "along / about", "amount", "reaches")
+    mode = "rule" if run.method == "stepwise" else "mode"
+    table = plain_table("#", "phase", mode, *to, "motion", "direction / axis", "amount", "new contacts")
     if has_left:
-        table.add_column("leaves", overflow="fold")
+        table.add_column("lost contacts", overflow="fold")
     if is_verbose:
-        table.add_column("contacts", overflow="fold")
+        table.add_column("all contacts", overflow="fold")
     last = run.phases[0]
     for row in rows:
         if row.phase is not last:
@@ -47,21 +48,23 @@ def _table(run: Run, words: LengthWords, *, is_verbose: bool) -> Table:
         if is_verbose:
             cells.append(Text(names_of(row.event.contacts)))
         depth = [Text(_depth(row, loads, words))] if loads else []
-        table.add_row(Text(str(row.number)), Text(row.phase.name), Text(row.event.rule), *depth, _what(row), *cells)
+        first = (str(row.number), row.phase.name, mode_of(row.event.rule))
+        table.add_row(*map(Text, first), *depth, _what(row), *cells)
     return table
 
 
 def _lists(run: Run, words: LengthWords, *, is_verbose: bool) -> list[RenderableType]:
     """Return the same in two lines for each event: what moved, and what touches now and no more."""
     rows, loads = list(changes_of(run)), _driven(run)
-    widths = len(str(len(rows))), max(len(row.event.rule) for row in rows)
+    widths = len(str(len(rows))), max(len(mode_of(row.event.rule)) for row in rows)
     parts: list[RenderableType] = []
     for phase in run.phases:
         table = Table.grid(padding=(0, 2))
         table.add_column(justify="right", min_width=widths[0])
         table.add_column(min_width=widths[1])
         for row in (row for row in rows if row.phase is phase):
-            table.add_row(Text(str(row.number)), Text(row.event.rule), _told(row, loads, words, is_verbose=is_verbose))
+            told = _told(row, loads, words, is_verbose=is_verbose)
+            table.add_row(Text(str(row.number)), Text(mode_of(row.event.rule)), told)
         parts += [*([""] if parts else []), Text(f"{phase.name}:"), table]
     return parts
 

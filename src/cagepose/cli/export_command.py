@@ -36,7 +36,7 @@ def export_command(
     method: MethodOption = None,
     set_values: SetOption = (),
 ) -> int:
-    """Run a scene, write it for another program, and say what the file does not hold as the scene does."""
+    """Run a scene, write it for another program, and list what the file cannot hold."""
     from pathlib import Path
 
     from cagepose.errors import SceneError, printable

@@ -20,7 +20,7 @@ MOST_ROWS = 30
 """A table has at most so many contacts, those with the greatest forces; ``--verbose`` prints all."""
 APART, NO_FORCE = "", "0"
 """What stands for a contact that is none at the end of a phase, and for one that bears nothing."""
-PRESSED = "forces of the load alone; a drive that cannot go on presses as hard as it is driven"
+PRESSED = "forces of the load alone; the drive can add forces of any size"
 
 
 def force_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -> list[RenderableType]:
@@ -34,7 +34,9 @@ def force_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -
     whole = _table(run, phases, shown_words)
     tables = [whole] if fits(whole, width) else [_table(run, [phase], shown_words) for phase in phases]
     shares = [
-        Text(f"{phase.name}: one way of many to share the load between {names_of(phase.proof.shared)}")
+        Text(
+            f"{phase.name}: statically indeterminate, one of many solutions is shown for {names_of(phase.proof.shared)}"
+        )
         for phase in phases
         if phase.proof.shared
     ]
@@ -45,7 +47,7 @@ def force_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -
     n_all = len({(contact.point, contact.box) for phase in phases for contact in phase.contacts if _bears(contact)})
     if n_all > MOST_ROWS and not is_verbose:
         shares.append(
-            Text(f"not shown: {number_of(n_all - MOST_ROWS, 'contact')} that bear less (--verbose shows them)")
+            Text(f"not shown: {number_of(n_all - MOST_ROWS, 'contact')} with smaller forces (--verbose shows them)")
         )
     return [*parts, *shares, ""] if shares else parts
 
@@ -99,9 +101,9 @@ def _bears(contact: Contact) -> bool:
 
 
 def _force(contact: Contact) -> str:
-    """``72.28 + 9.757 across``: along the normal, and across it."""
+    """``72.28 + 9.757 friction``: along the normal, and tangential."""
     if contact.force_normal_n is None or not _bears(contact):
         return NO_FORCE
-    across = 0.0 if contact.force_tangential_n is None else math.hypot(*contact.force_tangential_n)
-    beside = f" + {across:.4g} across" if across > SIDEWAYS_OF_NORMAL * contact.force_normal_n else ""
+    tangential = 0.0 if contact.force_tangential_n is None else math.hypot(*contact.force_tangential_n)
+    beside = f" + {tangential:.4g} friction" if tangential > SIDEWAYS_OF_NORMAL * contact.force_normal_n else ""
     return f"{contact.force_normal_n:.4g}{beside}"

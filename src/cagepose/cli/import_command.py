@@ -25,10 +25,10 @@ def import_command(
     object: Annotated[
         str | None,
         Parameter(
-            help="The body that is held, with all that hangs on it; left out: the one that moves freely. Of solids, one"
-            " by its name, or all by what their names begin with before a /; left out: object. Without a FILE: a STEP,"
-            " STL, OBJ, PLY or GLB file, or one of its solids as FILE#NAME, which stands where its own coordinates"
-            " say, or at @x,y,z or @x,y,z,yaw,pitch,roll behind it: turned by degrees, then moved by millimetres."
+            help="The body that is held, with everything fixed to it; left out: the one that moves freely. Of solids:"
+            " the name of one, or what the names of several begin with before a /; left out: object. Without a FILE: a"
+            " STEP, STL, OBJ, PLY or GLB file, or one of its solids as FILE#NAME, placed by its own coordinates, or"
+            " moved by @x,y,z or @x,y,z,yaw,pitch,roll behind the name (turned by degrees, then moved by millimetres)."
         ),
     ] = None,
     cage: Annotated[
@@ -36,8 +36,8 @@ def import_command(
         Parameter(
             negative=(),
             show_default=False,
-            help="A body that holds it, with all that hangs on it; may be given several times. Left out: all others."
-            " Without a FILE: a file, as for --object, which may be given again at another place.",
+            help="A body of the cage, with everything fixed to it; may be given several times. Left out: all others."
+            " Without a FILE: a file, as for --object; the same one may be given again at another place.",
         ),
     ] = (),
     root: Annotated[
@@ -56,17 +56,20 @@ def import_command(
         ),
     ] = None,
     fillets: Annotated[
-        bool, Parameter(help="Whether hollow roundings of STEP files stay; else walls go on to where they meet.")
+        bool,
+        Parameter(
+            help="Keep concave fillets of STEP files; with --no-fillets the walls beside them go on to a sharp corner."
+        ),
     ] = True,
     report: Annotated[
         FileName | None,
         FILE,
         Parameter(
-            help="Page to write as well, such as report.html: what became of each solid or body, with pictures of both."
+            help="Report to write as well, such as report.html: what each solid or body became, with pictures of both."
         ),
     ] = None,
 ) -> int:
-    """Read a model, or join files of solids, write it as a scene, and say what is not in it as it was."""
+    """Read a model, or join files of solids, write it as a scene, and list what could not be kept."""
     from cagepose.cli.import_summary import print_summary
     from cagepose.errors import printable
     from cagepose.exchange.imported import imported

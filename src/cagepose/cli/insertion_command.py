@@ -22,13 +22,15 @@ def insertion_command(
     *,
     phase: Annotated[
         str | None,
-        Parameter(help="The phase whose drive is meant. Left out: the only one that has a drive.", show_default=False),
+        Parameter(
+            help="The phase whose drive to look at. May be left out if only one has a drive.", show_default=False
+        ),
     ] = None,
     along: Annotated[
         str | None,
         Parameter(
-            help="Freedoms in which the drive may be out of place, such as y,yaw: x, y, z (shifts), roll, pitch, yaw"
-            " (turns about them), in the cage's frame. Left out: those across the way.",
+            help="Freedoms in which to find the permitted misalignment, such as y,yaw: x, y, z (shifts), roll, pitch,"
+            " yaw (turns about these axes), in the cage's frame. Left out: all that are not along the drive.",
             show_default=False,
         ),
     ] = None,
@@ -42,12 +44,12 @@ def insertion_command(
         FILE,
         Parameter(
             help="Page to write as well, such as report.html: all of this with a picture of the mechanism, and the runs"
-            " from just beyond what is permitted, to be played.",
+            " just outside the permitted misalignment, to be played.",
             show_default=False,
         ),
     ] = None,
 ) -> int:
-    """Print how far a drive gets, its force, where it could jam, and how far it may be out of place."""
+    """Print how far a drive gets, its force, where it could jam, and the misalignment it permits."""
     from cagepose.errors import SceneError, SceneFileError
     from cagepose.files.scene_file import read_scene_file
 
@@ -136,5 +138,5 @@ def _output_problems(picture: str | None, report: str | None) -> list[str]:
 
 def _show_search(share: float) -> None:
     """Tell on the terminal how much of the search is done."""
-    sys.stderr.write(f"\rsearching how far it may be out of place: {share:4.0%}")
+    sys.stderr.write(f"\rsearching the permitted misalignment: {share:4.0%}")
     sys.stderr.flush()

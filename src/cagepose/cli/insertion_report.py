@@ -17,7 +17,7 @@ from cagepose.studies.insertion_result import Insertion
 from cagepose.studies.misalignment import LENGTHS, SHORT, MisalignmentEnd
 
 ENDS = {
-    SHORT: "falls short: the drive gets to its end, but the object stays behind",
+    SHORT: "falls short: the drive reaches its end, but the object does not",
     "overlaps": "overlaps: the object would start inside the cage",
 }
 """What ends a side, where its word is no verdict of a run."""
@@ -43,28 +43,28 @@ def insertion_lines(insertion: Insertion, words: LengthWords) -> list[tuple[str,
     run, number = insertion.run, insertion.phase
     if insertion.ended is None:
         before = run.phases[-1].name
-        return [("drive", f"it did not begin: {before} did not come to rest ({run.verdict})")]
+        return [("drive", f"it did not start: {before} did not come to rest ({run.verdict})")]
     lines = list(lines_of_phase(run, number, words, is_alone=True))
     if insertion.drive is None:
         return lines
     friction = short(insertion.friction, 6, 1e-9)
     if insertion.least_jam_share is not None:
         where = words.depth(run.scene.loads[number], insertion.least_jam_share)
-        lines.append(("", f"the least friction that lets it is needed at {where}"))
+        lines.append(("", f"the first place to jam, as friction grows, is at {where}"))
     if insertion.cannot_jam:
-        lines.append(("", f"it cannot jam: with these contacts along this path, at friction {friction} and below"))
+        lines.append(("", f"it cannot jam with these contacts along this path, at a friction of {friction} or less"))
     return lines
 
 
 def meaning(insertion: Insertion) -> str:
     """Return what the table of how far all may be out of place says."""
     what = names_of(insertion.bodies) + (" with the object" if insertion.takes_object else "")
-    return f"How far {what} may be out of place, one freedom at a time, and what happens just beyond:"
+    return f"Permitted misalignment of {what}, one freedom at a time, and how it fails just outside:"
 
 
 def permitted(insertion: Insertion, unit: LengthUnit) -> Table:
     """Return that table, a row for each freedom."""
-    table = plain_table("", "unit", "from", "to", "just below", "just above")
+    table = plain_table("", "unit", "from", "to", "fails below", "fails above")
     for name, found in insertion.misalignment.items():
         is_length = name in LENGTHS
         cells = (

@@ -27,7 +27,7 @@ SetOption = Annotated[
         name="--set",
         negative="",
         show_default=False,
-        help="Change one value: key.path=value, such as object.boxes[0].size[2]=12. May be given again.",
+        help="Change one value of the scene, such as object.boxes[0].size[2]=12; may be given several times.",
     ),
 ]
 AtOption = Annotated[

@@ -20,8 +20,8 @@ def play_command(
     direction: Annotated[
         tuple[str, ...],
         Parameter(
-            help="A direction x,y,z in the cage's frame to ask the points about; may be given several times. Left out:"
-            " x, y and z.",
+            help="A direction x,y,z in the cage's frame along which to find the play of the points; may be given"
+            " several times. Left out: x, y and z.",
             negative=(),
             show_default=False,
             allow_leading_hyphen=True,
@@ -30,16 +30,16 @@ def play_command(
     seated: Annotated[
         bool,
         Switch,
-        Parameter(help="From where the loads bring it to rest: how far small pushes move it in its seat."),
+        Parameter(help="Start where the loads bring it to rest: how far can small pushes move it from there?"),
     ] = False,
     phase: Annotated[
         str | None,
-        Parameter(help="With --seated: at rest in which phase. Left out: the last.", show_default=False),
+        Parameter(help="With --seated: the phase at whose end it rests. Left out: the last.", show_default=False),
     ] = None,
     set_values: SetOption = (),
     json: Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the tables.")] = False,
 ) -> int:
-    """Print the range of each freedom and point, what limits it, whether the object is caged, where loads leave it."""
+    """Print the play of each freedom and point, what limits it, whether the object is caged, where loads press it."""
     from cagepose.cli.triples import read_triple
     from cagepose.errors import SceneError, SceneFileError
     from cagepose.files.scene_file import read_scene_file
@@ -49,14 +49,14 @@ def play_command(
     points = [read_triple("--at", text, problems) for text in at]
     along = [read_triple("--direction", text, problems) for text in direction]
     problems += [
-        f"--direction {text}: has no direction; give a vector of any other length"
+        f"--direction {text}: is the zero vector; give any other one"
         for text, found in zip(direction, along, strict=True)
         if found == (0.0, 0.0, 0.0)
     ]
     if direction and not at:
-        problems.append("--direction: says where points go, and there are none; give one with --at")
+        problems.append("--direction: is for points, and there are none; give one with --at")
     if phase is not None and not seated:
-        problems.append("--phase: says in which rest, and none is asked about; add --seated")
+        problems.append("--phase: works only together with --seated; add --seated")
     try:
         scene_file = read_scene_file(scene, set_values)
     except SceneFileError as error:

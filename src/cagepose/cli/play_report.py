@@ -26,14 +26,18 @@ MOST_CLEARANCES = 4
 WORTH_OF_BEST = 0.99
 """Clearances worth this part of the best one are as good to close; slopes say no more of a whole gap."""
 MEANING = (
-    "exact: no motion nearby goes farther (*: nor any inside the cage, by more than 1 % of it); past: so far, and"
-    " perhaps farther; certified: no motion at all inside the cage does"
+    "exact: no nearby motion goes farther (*: no motion at all, to within 1 %); at least, at most: the search ended"
+    " there; certified within: proven bounds of all motions inside the cage"
 )
-MEANING_WITHOUT_PROOF = "exact: no motion nearby goes farther; past: so far, and perhaps farther; no end: it goes on"
-SEATED = "without friction, pushed a ten-thousandth as hard as the load, which goes on: how far it comes each way"
+MEANING_WITHOUT_PROOF = (
+    "exact: no nearby motion goes farther; at least, at most: the search ended there; unlimited: nothing stops it"
+)
+SEATED = (
+    "how far a small push moves it each way, without friction; the push is 1/10000 of the load, which goes on acting"
+)
 HALVED = (
-    "limited by: the gaps that end the play there, and by how much the end comes back, or goes on, as one of them is"
-    " made smaller or larger; halved if closed by: one gap alone, made so much smaller, leaves half of the play"
+    "sensitivity: by how much the play falls, or grows, for each {} by which one of these gaps is made smaller, or"
+    " larger; to halve it: by how much to make one of these gaps smaller, to first order"
 )
 MOST_MOTIONS = 6
 """So many motions of a way out are printed; the document has all."""
@@ -47,28 +51,30 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     width, words = screen_width(), LengthWords(unit, play.scene.size_m)
     tables = [_ranges(rows, words, digits) for digits in DIGITS_OF_RANGES]
     table = next((table for table in tables if fits(table, width)), tables[-1])
-    why = plain_table("end", "limited by", f"back per {unit} closed", f"on per {unit} opened", "halved if closed by")
+    why = plain_table("end", "limited by", "sensitivity to less gap", "sensitivity to more gap", "to halve it")
     for name, is_length, low, high in rows:
         for sign, end in (("least", low), ("greatest", high)):
             for number, (worth, points) in enumerate(_limits(end, is_length, unit).items()):
                 title = f"{sign} {name}" if number == 0 else ""
                 why.add_row(Text(title), Text(", ".join(points)), *(Text(cell) for cell in worth))
     if play.cage is None:
-        print_all(Text(f"{play.scene.name}: play where {play.seated} seats it, in the cage's frame"), "", Text(SEATED))
+        print_all(
+            Text(f"{play.scene.name}: play from the rest of {play.seated}, in the cage's frame"), "", Text(SEATED)
+        )
     else:
         print_all(Text(f"{play.scene.name}: play from the start pose, in the cage's frame"), "")
         _print_cage(play.cage, words)
     is_proven = any(end.certified is not None for _, _, low, high in rows for end in (low, high))
     print_all("", table, "", *_legend(play, words), Text(MEANING if is_proven else MEANING_WITHOUT_PROOF), "")
     if why.row_count:
-        print_all(why, "", Text(HALVED), "")
+        print_all(why, "", Text(HALVED.format(unit)), "")
     for rest in rests:
         print_all(_rest(rest, words))
     asked = {rest.phase for rest in rests}
     for load in play.scene.loads if rests else ():
         if load.name not in asked:
             print_all(
-                Text(f"{load.name} has more than a weight and one force: where it leaves the object says cagepose run")
+                Text(f"{load.name} has more than a weight and one force: cagepose run says where it comes to rest")
             )
     proven = f", certificate {duration(play.certificate_s)}" if play.certificate_s else ""
     print_all(Text(f"analysis {duration(play.analysis_s)}{proven}"))
@@ -79,13 +85,15 @@ def _print_cage(cage: CageVerdict, words: LengthWords) -> None:
     verdict.append(cage.verdict, style=STYLES[cage.verdict])
     print_all(verdict.append(f" ({cage.reason})"))
     if cage.verdict == "escapes":
-        print_all(Text("it can leave: the ends are those near the start, and beyond them there is more"))
+        print_all(Text("it can leave the cage: the limits below hold near the start only"))
     if cage.free_directions:
         print_all(Text(f"free directions: {' '.join(cage.free_directions)}"))
     if cage.leaves_at is not None:
-        print_all(Text(f"it leaves its face with the object's origin at ({words.lengths(cage.leaves_at.position_m)})"))
+        print_all(
+            Text(f"it loses its last contact with the object's origin at ({words.lengths(cage.leaves_at.position_m)})")
+        )
     if cage.path is not None:
-        print_all(Text(f"way out: {_way_out(cage.path, words)}"))
+        print_all(Text(f"escape path: {_way_out(cage.path, words)}"))
 
 
 def _ranges(rows: Sequence[tuple[str, bool, PlayEnd, PlayEnd]], words: LengthWords, digits: int) -> Table:
@@ -103,7 +111,8 @@ def _ranges(rows: Sequence[tuple[str, bool, PlayEnd, PlayEnd]], words: LengthWor
         is_certified = low.certified is not None and high.certified is not None
         ranges = {
             "linear": f"{written(low.linear)} to {written(high.linear)}",
-            "exact": f"{_exact(low, is_length, words, digits)} to {_exact(high, is_length, words, digits)}",
+            "exact": f"{_exact(low, 'at most', is_length, words, digits)} to"
+            f" {_exact(high, 'at least', is_length, words, digits)}",
             "certified within": f"{written(low.certified)} to {written(high.certified)}" if is_certified else "-",
         }
         cells = (name, str(words.unit) if is_length else "deg", *(ranges[kind] for kind in kinds))
@@ -122,18 +131,18 @@ def _rest(rest: PlayRest, words: LengthWords) -> Text:
     line = Text(f"{rest.phase} ")
     pose, forces = rest.pose_world_object, rest.exact_forces
     if pose is not None:
-        line.append("presses it ")
+        line.append("presses the object ")
     else:
         pose, forces = rest.linear_pose_world_object, rest.forces
         if pose is None:
-            return line.append("presses it out: nothing stops the load")
-        line.append("finds no rest nearby", style="yellow").append("; to first order it would press it ")
+            return line.append("presses the object out: nothing stops it")
+        line.append("finds no rest nearby", style="yellow").append("; to first order it would press the object ")
     angles = ", ".join(short(math.degrees(angle), 4, 1e-9) for angle in pose.euler_zyx)
     line.append(f"to ({words.lengths(pose.position_m)}), yaw, pitch, roll ({angles}) deg, without friction;")
     amounts = ", ".join(f"{force.point} {force.force_n:.4g}" for force in forces)
     line.append(f" forces{' [N]' if rest.in_newtons else ''}: {amounts}")
     if rest.undetermined:
-        line.append(f"; to first order free along {' '.join(freedom.name for freedom in rest.undetermined)}")
+        line.append(f"; to first order free to move in {' '.join(freedom.name for freedom in rest.undetermined)}")
     return line
 
 
@@ -152,15 +161,16 @@ def _point_name(place: int, play: Play) -> str:
 
 def _value(value: float | None, is_length: bool, words: LengthWords, digits: int) -> str:
     if value is None:
-        return "no end"
+        return "unlimited"
     if is_length:
         return short(float(from_metres(value, words.unit)), digits, words.noise)
     return short(math.degrees(value), digits, 1e-10)
 
 
-def _exact(end: PlayEnd, is_length: bool, words: LengthWords, digits: int) -> str:
+def _exact(end: PlayEnd, bound: str, is_length: bool, words: LengthWords, digits: int) -> str:
+    """Return an end; of one that was not found how far the search came, as a ``bound``."""
     value = _value(end.reached, is_length, words, digits)
-    return f"past {value}" if end.status == "not converged" else f"{value}*" if end.status == "proven" else value
+    return f"{bound} {value}" if end.status == "not converged" else f"{value}*" if end.status == "proven" else value
 
 
 def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> dict[tuple[str, str, str], list[str]]:
@@ -168,7 +178,7 @@ def _limits(end: PlayEnd, is_length: bool, unit: LengthUnit) -> dict[tuple[str, 
     factor = 1.0 if is_length else math.degrees(1.0) / float(from_metres(1.0, unit))
     by_m, alike = _halving(end)
     by = f"{float(from_metres(by_m, unit)):.3g} {unit}"
-    takes_several = "takes several" if by_m > 0.0 and not alike else ""
+    takes_several = "several gaps" if by_m > 0.0 and not alike else ""
     found: dict[tuple[str, str, str], list[str]] = {}
     for clearance in end.clearances[:MOST_CLEARANCES]:
         closing, opening = f"{clearance.closing * factor:.4g}", short(clearance.opening * factor, 4, 1e-6)
@@ -196,11 +206,11 @@ def _halving(end: PlayEnd) -> tuple[float, list[str]]:
 
 
 def _way_out(path: Sequence[PathStep], words: LengthWords) -> str:
-    """``turn about (0, 0, 1) by 90 deg, travel along (1, 0, 0) by 5 mm; then nothing is ahead``."""
+    """``turn about (0, 0, 1) by 90 deg, travel along (1, 0, 0) by 5 mm; then no contact is ahead``."""
     if not path:
-        return "nothing is ahead where it starts"
+        return "no contact is ahead from the start"
     motions = [step.motion for step in path[:MOST_MOTIONS]]
     ways = {"travel": "along", "turn": "about", "screw": "about"}
     told = [f"{motion.kind} {ways[motion.kind]} {line_of(motion)} by {words.amount(motion, 4)}" for motion in motions]
     more = [f"{len(path) - len(motions)} more"] if len(path) > len(motions) else []
-    return f"{', '.join(told + more)}; then nothing is ahead"
+    return f"{', '.join(told + more)}; then no contact is ahead"

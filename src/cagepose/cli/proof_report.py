@@ -36,12 +36,12 @@ def check_saved_run(path: str) -> int:
 def _lines(run: Run, number: int, checked: CertificateCheck) -> Iterator[str]:
     from cagepose.model.wording import counted
 
-    left = f"forces balance the load to {checked.residual:.1e} of it"
+    left = f"contact forces balance the load (residual {checked.residual:.1e})"
     if checked.uniqueness == "strong":
         cases = counted((checked.n_leaves, "case", "cases"))
-        yield f"rest is proven: {left}, and no motion begins ({cases}, none above {checked.speed:.1e} loads)"
+        yield f"rest is proven: {left}, and no motion can begin ({cases}, at most {checked.speed:.1e} loads)"
     elif checked.uniqueness is not None:
-        other = "other forces let it move" if checked.uniqueness == "weak" else "another motion is not ruled out"
+        other = "a motion is possible too" if checked.uniqueness == "weak" else "another motion is not ruled out"
         yield f"rest is possible: {left}; {other}"
     if checked.drive is not None:
         yield from _drive_lines(run, number, checked.drive)
@@ -53,17 +53,17 @@ def _drive_lines(run: Run, number: int, drive: DriveCheck) -> Iterator[str]:
     places, margin = counted((drive.n_places, "place", "places")), drive.margin
     if drive.could_jam:
         shares = few([f"{100.0 * share:.6g} %" for share in drive.could_jam])
-        yield f"drive: could jam, with forces that stand against it, at {shares} of the way ({places} asked)"
+        yield f"drive: could jam at {shares} of the way ({places} checked)"
     if len(drive.could_jam) < drive.n_places:
         where = "at the others" if drive.could_jam else f"at any of {places}"
         sure = "nothing touches there" if margin is None else f"margin {max(margin, 0.0):.1e} of the drift"
         yield f"drive: cannot jam {where}, with these contacts, at this friction and below ({sure})"
-    yield "drive: nothing is said of what lies between the places"
+    yield "drive: only these places are proven, not the way between them"
     if drive.stopped == "blocked":
         free = counted((drive.n_free, "freedom is", "freedoms are")) or "no freedom is"
-        yield f"blocked: normal forces stand against the drive; {free} left, to second order not checked"
+        yield f"blocked: normal forces resist any drive force; {free} left, to second order not checked"
     elif drive.stopped == "jams":
         cases = counted((drive.n_leaves, "case", "cases"))
-        yield f"jams: in none of {cases} there is a motion in which the drive goes on; without friction there is one"
+        yield f"jams: in none of {cases} can the drive go on; without friction it could"
     elif run.phases[number].verdict in ("blocked", "jams"):
-        yield f"{run.phases[number].verdict}: there is no proof of that in the file"
+        yield f"{run.phases[number].verdict}: the file has no proof of it"

@@ -27,8 +27,8 @@ from cagepose.studies.ending import run_kind, turned_far
 from cagepose.studies.margin import Margin
 
 POSES = {
-    "escapes": "where nothing is ahead any more; the object goes on from here",
-    **dict.fromkeys(FAILURES, "where the run stopped; it is no end"),
+    "escapes": "where no more contact is ahead; from here the object moves away",
+    **dict.fromkeys(FAILURES, "where the run stopped; not a position of rest"),
 }
 """Where the pose is taken from, if it is not that of a rest."""
 LARGE_FORCE_IN_LOADS = 10.0
@@ -107,7 +107,7 @@ class _Writer:
             ("verdict", _verdicts(run)),
             *((f"proof of {phase.name}", _proof(phase)) for phase in run.phases[:-1] if self.is_verbose),
             ("mechanics" if run.is_contradicted else "proof", _proof(run.phases[-1])),
-            ("onset", self._onset()),
+            ("initial motion", self._onset()),
             ("critical friction", _critical(run)),
             *self.margin,
         ):
@@ -168,7 +168,7 @@ def _firmness(phase: PhaseRun) -> str:
     proof = phase.proof
     if phase.verdict not in AT_REST or proof.stability is None:
         return ""
-    left = f", free along {' '.join(proof.undetermined)}" if proof.undetermined else ""
+    left = f", free to move in {' '.join(proof.undetermined)}" if proof.undetermined else ""
     return f" ({'stability not shown' if proof.stability == 'not shown' else proof.stability}{left})"
 
 
@@ -181,7 +181,7 @@ def _proof(phase: PhaseRun) -> str:
         sizes.append(f"gap work {proof.gap_work:.1e}")
     if proof.largest_force is not None and proof.largest_force > LARGE_FORCE_IN_LOADS:
         sizes.append(f"largest force {proof.largest_force:.3g} loads")
-    beside = " as the bodies stand there" if phase.verdict in STOPPED else ""
+    beside = " with the bodies where they stopped" if phase.verdict in STOPPED else ""
     return f"{proof.verdict}{beside}: {proof.reason} ({', '.join(sizes)})"
 
 
@@ -194,5 +194,5 @@ def _critical(run: Run) -> str:
         if least is None:
             continue
         enough = f"{least / greatest:.7g} times each coefficient" if greatest > 0.0 else f"{least:.10g}"
-        texts.append(f"{phase.name}: {'none is enough' if math.isinf(least) else enough}")
+        texts.append(f"{phase.name}: {'no friction is enough' if math.isinf(least) else enough}")
     return ", ".join(texts)

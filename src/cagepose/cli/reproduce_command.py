@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 
 def reproduce_command(
     *,
-    out: Annotated[FileName, FILE, Parameter(help="Folder for the report; made if it is not there.")] = "reproduction",
+    out: Annotated[
+        FileName, FILE, Parameter(help="Folder for the report; created if it does not exist.")
+    ] = "reproduction",
 ) -> int:
     """Run the paper's cases, write a report with pictures, and print its numbers beside ours."""
     from cagepose.errors import printable

@@ -33,10 +33,14 @@ def run_command(
         bool, Switch, Parameter(help="Find the least coefficient of friction that each rest needs.")
     ] = False,
     margin: Annotated[
-        bool, Switch, Parameter(help="Find what each rest balances beside its load, and what each contact may carry.")
+        bool,
+        Switch,
+        Parameter(help="Find how much extra force and moment each rest can bear, and the range of each contact force."),
     ] = False,
     verbose: Annotated[
-        bool, Switch, Parameter(help="Print what touches after each event, and where; pose and proof of every phase.")
+        bool,
+        Switch,
+        Parameter(help="Print all contacts after each event and where they are; pose and proof of every phase."),
     ] = False,
     check_tolerance: Annotated[
         bool, Switch, Parameter(help="Run again with other touch tolerances and warn if the verdict changes.")

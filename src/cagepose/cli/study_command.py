@@ -27,11 +27,11 @@ def study_command(
     /,
     *,
     out: Annotated[
-        FileName | None, FILE, Parameter(help="Folder for rows and report; made if it is not there.")
+        FileName | None, FILE, Parameter(help="Folder for rows and report; created if it does not exist.")
     ] = None,
-    resume: Annotated[bool, Switch, Parameter(help="Go on with a folder that holds this study already.")] = False,
+    resume: Annotated[bool, Switch, Parameter(help="Continue a study that was interrupted, in its folder.")] = False,
     workers: Annotated[
-        int | None, Parameter(help="Threads, or processes where scenes are built row by row; left out: all cores.")
+        int | None, Parameter(help="How many threads or processes to use; left out: one for each core.")
     ] = None,
     dask: Annotated[
         str | None,
@@ -42,7 +42,7 @@ def study_command(
         FileName | None, FILE, Parameter(help="After show: write all rows into this file, and print nothing else.")
     ] = None,
 ) -> int:
-    """Run a study into a folder with its report, or show what a folder says: cagepose study show FOLDER"""
+    """Run a study and write its report into a folder; or print it again: cagepose study show FOLDER"""
     problem = _problem(file, folder, out, resume, workers, dask) or _csv_problem(file, csv, json)
     if problem is not None:
         sys.stderr.write(f"cagepose: {problem} See: cagepose study --help\n")
@@ -109,7 +109,7 @@ def _problem(
 
 def _csv_problem(file: str, csv: str | None, json: bool) -> str | None:
     if csv is not None and file != SHOW:
-        return "--csv writes the rows of a folder that is there: study show FOLDER --csv FILE."
+        return "--csv works with study show alone: study show FOLDER --csv FILE."
     return "--csv prints no report; leave --json out." if csv is not None and json else None
 
 

@@ -34,7 +34,7 @@ def print_study(found: dict[str, Any]) -> None:
 
 
 def _warnings(found: dict[str, Any]) -> list[str]:
-    lines = [f"{n:,} failed ({name}): without an answer, and not good" for name, n in found["failed"].items()]
+    lines = [f"{n:,} failed ({name}): they have no result and count as not good" for name, n in found["failed"].items()]
     if found["at_rest"] and not found["yield"]["runs"]:
         rests = " and ".join(f"{n:,} as {name!r}" for name, n in found["at_rest"].items())
         lines.append(f"no run is good, though runs come to rest: {rests}; is accept right?")
@@ -67,7 +67,7 @@ def _matters(found: dict[str, Any]) -> Table | None:
     if not shown:
         return None
     first = shown[0]
-    table = plain_table(f"what matters for {first['name']}", "alone", "with others")
+    table = plain_table(f"Sobol indices of {first['name']}", "first order", "total")
     for row in sorted(first["indices"], key=lambda row: -row["total"])[:MOST_ROWS]:
         table.add_row(
             row["key"],
@@ -80,6 +80,6 @@ def _matters(found: dict[str, Any]) -> Table | None:
 def _box(found: dict[str, Any]) -> str:
     layer = "".join(f", {key} {number_or_dash(value)}" for key, value in (found["layer"] or {}).items())
     if found["box"] is None:
-        return f"capture map{layer}: the nominal values are not accepted, or not on the map"
+        return f"capture map{layer}: no box, as the nominal values are not accepted, or not on the map"
     sides = [f"{key} {range_or_dash(side)}" for key, side in zip(found["over"], found["box"], strict=True)]
     return f"largest box of accepted runs{layer}: {', '.join(sides)}"

@@ -32,9 +32,10 @@ def view_command(
     method: MethodOption = None,
     set_values: SetOption = (),
     host: Annotated[
-        str, Parameter(help="Address to serve on; another than this machine's own lets others in the network look.")
+        str,
+        Parameter(help="Address to serve on. The default is for this machine only; any other lets the network look."),
     ] = "127.0.0.1",
-    port: Annotated[int, Parameter(help="Port to serve on; if it is taken, the next free one.")] = PORT_USUAL,
+    port: Annotated[int, Parameter(help="Port to serve on; if it is in use, the next free one.")] = PORT_USUAL,
 ) -> int:
     """Show the object in its cage, the timeline, the events and the forces; a scene is run first."""
     from cagepose.errors import printable
@@ -107,8 +108,8 @@ def _serve(shown: Playback, what_if: WhatIf | None, host: str, port: int) -> int
         return 2
     with server:
         if server.server_port != port:
-            sys.stdout.write(f"port {port} is taken; using {server.server_port}\n")
-        sys.stdout.write(printable(f"{shown.run.scene.name}: look at {server.address} (Ctrl-C ends it)") + "\n")
+            sys.stdout.write(f"port {port} is in use; using {server.server_port}\n")
+        sys.stdout.write(printable(f"{shown.run.scene.name}: open {server.address} (Ctrl-C stops it)") + "\n")
         sys.stdout.flush()
         try:
             server.serve_forever()

@@ -231,11 +231,11 @@ def _of_ends(phase: PhaseRun, there: MujocoRest, scene: Scene) -> list[str]:
 
 def _of_starts(theirs_m: float | None, ours_m: float | None, allowed_m: float, size_m: float) -> list[str]:
     if theirs_m is not None and ours_m is not None and max(theirs_m, ours_m) <= allowed_m:
-        return ["both poses are rests: each program stays where the other one ended, so the end hangs on the way there"]
+        return ["both poses are rests: each program stays where the other one ended, so the end depends on the path"]
     found = []
     for program, pose, left_m in (("cagepose", "MuJoCo", theirs_m), ("MuJoCo", "cagepose", ours_m)):
         if left_m is not None:
-            goes = "stays there" if left_m <= allowed_m else f"leaves it by {left_m / size_m:.1g} of the scene's size"
+            goes = "stays there" if left_m <= allowed_m else f"moves away by {left_m / size_m:.1g} of the scene's size"
             found.append(f"{program}, started at {pose}'s pose, {goes}")
     return found
 
@@ -257,13 +257,13 @@ def _of_proof(done: Run, phase: PhaseRun) -> list[str]:
     if phase.verdict == "stable" and proof.verdict == "moves":
         found.append(f"the paper's rules end here, but by the mechanics it moves: {proof.reason}")
     if proof.verdict == "may rest":
-        found.append("cagepose's proof says no more than that it may rest: a motion can begin there as well")
+        found.append("cagepose proves only that it may rest: a motion can begin there as well")
     if proof.stability in ("marginal", "unstable"):
         found.append(f"the rest is {proof.stability}: a small disturbance may end it")
     if proof.undetermined:
-        found.append(f"the load leaves {', '.join(proof.undetermined)} open: the pose is one of many in a row")
+        found.append(f"the load does not determine {', '.join(proof.undetermined)}: a whole range of poses is at rest")
     if proof.verdict != "moves" and proof.needs_friction:
         friction = chosen_method(done.scene, done.method).friction(done.scene)
         of_all = "" if done.scene.friction_of else f" (coefficient {friction:.4g})"
-        found.append(f"friction holds it{of_all}, in a range of poses and not in one")
+        found.append(f"friction holds it{of_all}: a whole range of poses is at rest")
     return found

@@ -94,7 +94,7 @@ class ObjectModel(Mapping):
     )
     mass: Positive | None = Field(
         None,
-        description="Kilograms; left out: forces are per unit load, and beside a force the weight hardly counts.",
+        description="Kilograms; left out: forces are per unit load, and the weight is negligible beside a force.",
         examples=[0.5],
     )
     inertia: Annotated[list[Vector], Field(min_length=3, max_length=3)] | None = Field(
@@ -112,20 +112,22 @@ class ForceModel(Mapping):
     model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": ["at"]}, {"required": ["at_world"]}]})
 
     direction: Direction = Field(
-        description="Where it pushes to, any length: in the world, or in the object's frame where the force follows.",
+        description="Its direction, any length: in the world, or in the object's frame if the force follows.",
         examples=[[1, 0, 0]],
     )
     at: Vector | None = Field(
-        None, description="The point it acts at, in the object's frame: it rides on the object.", examples=[[0, 0, 0]]
+        None,
+        description="The point where it acts, in the object's frame: it moves with the object.",
+        examples=[[0, 0, 0]],
     )
     at_world: Vector | None = Field(
         None,
-        description="Instead of at: a point of the world, where the force stays while the object moves (quasistatic).",
+        description="Instead of at: a point of the world, where the force acts wherever the object is (quasistatic).",
         examples=[[0, 0, 50]],
     )
     magnitude: Positive | None = Field(
         None,
-        description="Newtons; left out, where nothing but gravity acts beside it: one unit of force.",
+        description="Newtons; may be left out if only gravity acts beside it: one unit of force.",
         examples=[10],
     )
     follows: bool | None = Field(
@@ -158,13 +160,13 @@ class SpringModel(Mapping):
     the line is the preload plus the stiffness times what it is longer than at the start poses.
     """
 
-    at: Vector = Field(description="Where it holds the object, in the object's frame.", examples=[[0, 0, 0]])
+    at: Vector = Field(description="Its end on the object, in the object's frame.", examples=[[0, 0, 0]])
     to: Vector = Field(
-        description="Where it is held itself, in the world, or in the frame of the body it rides on.",
+        description="Its other end, in the world, or in the frame of the body that of names.",
         examples=[[0, 0, 50]],
     )
     of: Name | None = Field(
-        None, description="The body of the cage that its far end rides on; left out: the world.", examples=["mate"]
+        None, description="The body of the cage that its other end moves with; left out: the world.", examples=["mate"]
     )
     stiffness: NotNegative = Field(
         description="Newtons for each unit of length of the file (N/mm with mm); 0: the tension is the preload.",
@@ -198,17 +200,17 @@ class LoadModel(Mapping):
     )
     drive: Drives | None = Field(
         None,
-        description="BODY: its way (quasistatic): a travel, a turn, both, or a list of such, one after the other. All"
-        " bodies move together, and stay where they were driven.",
+        description="BODY: its motion (quasistatic): a travel, a turn, both, or a list of these, one after the other."
+        " All bodies move together, and stay where they were driven.",
         examples=[{"mate": {"travel": [-25, 0, 0]}}],
     )
     stop_at: StopModel | None = Field(
-        None, description="At which force or moment the drive stops; left out: at none.", examples=[{"force": 200}]
+        None, description="Force or moment at which the drive stops; left out: no limit.", examples=[{"force": 200}]
     )
     press: Presses | None = Field(
         None,
-        description="BODY: how it presses (quasistatic): with a force or a spring, along a direction. It goes on, or"
-        " gives way, until all is at rest, also beside a drive.",
+        description="BODY: how it presses (quasistatic): with a force or a spring, along a direction. It moves until"
+        " everything is at rest; a drive may go on at the same time.",
         examples=[{"pad": {"force": 12, "along": [1, 0, 0]}}],
     )
 
@@ -218,8 +220,8 @@ class FrictionModel(CoefficientModel):
 
     of: dict[Name, NotNegative] | None = Field(
         None,
-        description="NAME: coefficient, of single cage points, boxes and other shapes (quasistatic). A contact has that"
-        " of the cage's, else that of the object's, else that of all.",
+        description="NAME: coefficient, of single cage points, boxes and other shapes (quasistatic). The"
+        " cage's part counts, else the object's part, else the coefficient of all.",
         examples=[{"C1": 0}],
     )
 
@@ -232,7 +234,7 @@ class TolerancesModel(Mapping):
     )
     grazing_band_deg: Annotated[float, Field(ge=0.0, lt=45.0)] | None = Field(
         None,
-        description="How far past perpendicular to the load a face still slips (stepwise); left out: 1.",
+        description="Degrees beyond a right angle to the load up to which a face still slips (stepwise); left out: 1.",
         examples=[1],
     )
 
@@ -276,14 +278,14 @@ class SceneModel(Mapping):
     method: Method | None = Field(None, description=f"How to run the scene; left out: {DEFAULT_METHOD}.")
     metric: Metric | None = Field(
         None,
-        description="How the object answers a load (quasistatic): released from rest, or dragged slowly; left out:"
-        f" {DEFAULT_METRIC}.",
+        description="What decides how the object starts to move (quasistatic): its inertia (release), or the same"
+        f" resistance in all directions (drag); left out: {DEFAULT_METRIC}.",
     )
     tolerances: TolerancesModel | None = Field(None, description="Left out: the defaults.")
     adjustable: dict[Name, AdjustableModel] | None = Field(None, description="Named numbers for sliders and studies.")
     left_out: Annotated[list[Name], Field(min_length=1)] | None = Field(
         None,
-        description="Names of what the scene's source has and the scene has not; each run warns of them.",
+        description="Names of parts of the scene's source that the scene lacks; each run warns of them.",
         examples=[["terrain"]],
     )
 

@@ -31,7 +31,7 @@ class LengthWords:
         if motion.kind == "turn":
             return angle
         if not math.isfinite(motion.distance_m):
-            return "nothing ahead"
+            return "no contact ahead"
         distance = f"{short(float(from_metres(motion.distance_m, self.unit)), digits, self.noise)} {self.unit}"
         return f"{distance}, {angle}" if motion.angle_rad else distance
 

@@ -51,8 +51,8 @@ def remarks(scene: Scene) -> Iterator[str]:
 def _left_out(scene: Scene) -> Iterator[str]:
     if scene.left_out:
         yield (
-            f"the source of this scene has {few(scene.left_out)}, too, which is left out here: where it would touch the"
-            " object, nothing holds that is shown"
+            f"the source of this scene also has {few(scene.left_out)}, which is left out here: where it would touch the"
+            " object, the result is wrong"
         )
 
 
@@ -141,6 +141,6 @@ def _fits(scene: Scene) -> Iterator[str]:
             names = [str(part.name) for part in round_ones if abs(part.radius_m - hole.radius_m) <= exact]
             if names:
                 yield (
-                    f"{few(names)} and the hole {hole.name} are equally wide, so that rounding decides whether one goes"
-                    " into the other; give the clearance that the real ones have"
+                    f"{few(names)} and the hole {hole.name} have the same radius, so that rounding decides whether one"
+                    " goes into the other; give them the clearance of the real parts"
                 )

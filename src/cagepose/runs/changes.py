@@ -12,6 +12,8 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.run import Event, MotionKind, PhaseRun, Run
 
+MODES = {"slide": "sliding", "pivot": "pivoting", "held": "balanced"}
+"""What people read where the rule of an event, as files have it, is not the word of the field."""
 SLIGHT_TURN_RAD = 0.1
 """A greater turn looks like one, however far off its axis is."""
 
@@ -54,6 +56,11 @@ def changes_of(run: Run) -> Iterator[Change]:
             left = tuple(name for name in before if name not in event.contacts)
             yield Change(number, event, phase, as_seen(event, pose, run.scene), reached, left)
             before, pose = event.contacts, event.pose_world_object
+
+
+def mode_of(rule: str) -> str:
+    """Return the contact mode that the rule of an event stands for; rules of the paper stay as they are."""
+    return MODES.get(rule, rule)
 
 
 def as_seen(event: Event, start: Pose, scene: Scene) -> Seen | None:

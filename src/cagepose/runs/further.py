@@ -91,7 +91,7 @@ def _run_within(seconds: float, scene: Scene, begun: tuple[Pose, np.ndarray]) ->
         return run_with(scene, method, method.rules(scene), begun, stop)
     except KeyboardInterrupt:
         if stop[0]:
-            raise TimeoutError(f"no end was found within {seconds:g} s") from None
+            raise TimeoutError(f"no rest was found within {seconds:g} s") from None
         raise
     finally:
         clock.cancel()

@@ -68,8 +68,8 @@ def _edge_motion_warnings(phase: PhaseRun) -> Iterator[str]:
     for number, event in enumerate(phase.events, start=1):
         if event.note == "edge":
             yield (
-                f"{phase.name}, event {number}: it moves because contacts lie exactly on edges; with other faces of"
-                " these edges they would hold it. Of real parts rounding decides that: move them off the edges"
+                f"{phase.name}, event {number}: it moves only because contacts lie exactly on edges: with the other"
+                " faces of these edges they would hold it. On a real part chance decides that: move them off the edges"
             )
             return
 
@@ -81,7 +81,7 @@ def _failure_warnings(phase: PhaseRun, load: Load) -> Iterator[str]:
     if phase.verdict == "limit" and not has_potential:
         yield (
             f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}: moments, and forces that"
-            " follow or stay at a point of the world, can drive an object round for ever; give it a stop or a spring"
+            " follow or stay at a point of the world, can drive an object in circles for ever; add a stop or a spring"
         )
     elif phase.verdict == "limit":
         yield f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}; {FAILURE_REMEDY}"
@@ -91,4 +91,4 @@ def _failure_warnings(phase: PhaseRun, load: Load) -> Iterator[str]:
             f" ({phase.proof.reason}); {FAILURE_REMEDY}"
         )
     elif phase.verdict == "stalled":
-        yield f"{phase.name}: no step got on that keeps the contacts of {touching}; {FAILURE_REMEDY}"
+        yield f"{phase.name}: no step was found that keeps the contacts of {touching}; {FAILURE_REMEDY}"

@@ -32,15 +32,15 @@ REASONS = {
     PROVEN_UNIQUE: "the contacts balance the load with friction, and every other contact mode is ruled out",
     OTHER_ONSET: "the contacts can balance the load with friction, but Coulomb's law allows this motion too",
     PROVEN_MOVES: "no contact forces balance the load",
-    TOO_MANY_CHOICES: "the contacts can balance the load with the first faces at edges that were asked, of too many",
-    TOO_MANY_CONTACTS: "more faces touch at one place than a proof has room for",
+    TOO_MANY_CHOICES: "the contacts can balance the load with some faces at edges; too many to check all",
+    TOO_MANY_CONTACTS: "too many faces touch at one place for a proof",
 }
-UNTOUCHED = "nothing touches, and all that acts is in balance by itself"
+UNTOUCHED = "nothing touches, and the loads balance each other"
 NOT_SHOWN = "the contacts can balance the load with friction, but that the object cannot move was not shown"
 WEDGED = "; the contacts can press against each other without a load, as in a wedge"
-STOPPED = "; what they leave, contacts without play stop to second order, by forces without bound"
-CHAINED = "; contacts without play hold each other in turn: the least play frees it"
-CLAMPED = "; it seems to hang on contacts that no load keeps closed: what opens one of them for a moment may free it"
+STOPPED = "; the rest of the load is held by contacts without play, to second order, by forces of unlimited size"
+CHAINED = "; contacts without play hold each other in turn: the slightest play frees it"
+CLAMPED = "; it seems to depend on contacts that no load keeps closed: opening one of them for a moment may free it"
 HELD_BY_NO_FORCES = (PROVEN_MOVES, TOO_MANY_CONTACTS)
 NUMBERS = [
     *("proof", "stability", "residual", "wedged", "is_second_order", "is_chained", "is_clamped"),

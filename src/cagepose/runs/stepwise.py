@@ -22,8 +22,8 @@ EVENT_LIMIT = 1000
 NOTES: dict[Note, str] = {
     "tie": "tie: the load has no moment about the axis through the two contacts, so the sense of turning was decided by"
     " convention (R2)",
-    "balanced": "balanced: the load's line passes through the one contact that holds, so the least disturbance may move"
-    " it (R1)",
+    "balanced": "balanced: the load's line passes through its only contact, so the slightest disturbance may move it"
+    " (R1)",
     "small turn": "held, though the load could still turn the object by less than 0.018 deg: the method cannot tell"
     " play this small from none (R3)",
     "edge tie": "tie: a contact lies on an edge whose faces make the same angle with the push, so which face counts was"

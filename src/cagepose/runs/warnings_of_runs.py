@@ -59,8 +59,8 @@ def spring_warnings(scene: Scene, phase: PhaseRun) -> Iterator[str]:
             spring, ends, start.position_m[None], start.quaternion_wxyz[None]
         ):
             yield (
-                f"{phase.name}: the ends of spring {number} have met, where it pulls nowhere; hold it farther away, or"
-                " give the object a stop before that"
+                f"{phase.name}: the ends of spring {number} have met, where its pull has no direction; fix it farther"
+                " away, or stop the object before that"
             )
 
 
@@ -83,9 +83,9 @@ def proof_warnings(phases: Sequence[PhaseRun], friction: float) -> Iterator[str]
         elif phase.verdict in ("stable", "may rest") and proof.verdict == "may rest":
             yield f"{phase.name}: {proof.reason}"
         if phase.verdict in ("stable", "rests", "may rest") and proof.stability == "unstable":
-            yield f"{phase.name}: the balance is unstable: the least disturbance moves the object on"
+            yield f"{phase.name}: the equilibrium is unstable: the slightest disturbance moves the object on"
         elif phase.verdict in ("stable", "rests", "may rest") and proof.stability == "not shown":
             yield (
-                f"{phase.name}: whether the balance is stable was not shown: part of the load has no potential, or a"
-                " contact lies where surfaces meet that bend by different amounts"
+                f"{phase.name}: it was not shown whether the equilibrium is stable: part of the load has no potential,"
+                " or a contact lies where surfaces of different curvature meet"
             )

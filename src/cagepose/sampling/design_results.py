@@ -68,14 +68,14 @@ class DesignResults:
         ends = f"{self.file.tight:g} to {self.file.loose:g}"
         if found.loosest is None:
             best = max(found.points, key=lambda point: point.reached)
-            return f"no {key} from {ends} keeps {wish}: at best {self.reached_text(best.reached)}, at {best.value:.5g}"
+            return f"no {key} from {ends} meets {wish}: at best {self.reached_text(best.reached)}, at {best.value:.5g}"
         if found.loosest == self.file.loose:
-            told = f"{key} = {found.loosest:.5g}, the loose end, still keeps {wish}; looser values were not asked"
+            told = f"{key} = {found.loosest:.5g}, the loose end, still meets {wish}; looser values were not tried"
         else:
-            told = f"{key} = {found.loosest:.5g} is the loosest that keeps {wish}, to within {found.accuracy:.1g}"
+            told = f"{key} = {found.loosest:.5g} is the loosest that meets {wish}, to within {found.accuracy:.1g}"
         if not found.is_monotone:
             ranges = " and ".join(f"{low:.5g} to {high:.5g}" for low, high in found.kept)
-            told += f"; not all tighter values keep it: {ranges} alone"
+            told += f"; not all tighter values do: only {ranges}"
         if self.file.model.wish.share is not None:
             told += f"; {self._confidence()}"
         return told
@@ -85,7 +85,7 @@ class DesignResults:
         to = "" if perhaps == self.file.loose else f" and {perhaps:.5g}"
         if surely is None:
             n_runs = self.n_runs // len(self.trade_off.points)
-            return f"but no value keeps it with 95 % confidence by {number_of(n_runs, 'run')}: ask for more"
+            return f"but no value does with 95 % confidence in {number_of(n_runs, 'run')}: set more runs"
         if not to:
             return f"with 95 % confidence at least {surely:.5g}"
         return f"with 95 % confidence between {surely:.5g}{to}"
@@ -134,11 +134,11 @@ class DesignResults:
                 values, [unit * point.reached for point in found.points], color=BLUE, marker="o", label="reached"
             )
             panel.axhline(
-                unit * wish.at_least, color=BLACK, linestyle="--", linewidth=1.0, label=f"wish: {self.wish_text()}"
+                unit * wish.at_least, color=BLACK, linestyle="--", linewidth=1.0, label=f"target: {self.wish_text()}"
             )
             for number, (tight, loose) in enumerate(found.kept):
                 span = sorted((tight, loose))
-                panel.axvspan(*span, color=GREEN, alpha=0.12, linewidth=0, label="kept" if number == 0 else None)
+                panel.axvspan(*span, color=GREEN, alpha=0.12, linewidth=0, label="target met" if number == 0 else None)
             if found.loosest is not None:
                 label = f"loosest: {found.loosest:.5g}"
                 panel.axvline(found.loosest, color=VERMILLION, linestyle="-.", linewidth=1.0, label=label)

@@ -108,11 +108,16 @@ def _sobol_figure(known: Sequence[Sensitivity], names: Sequence[str]) -> Figure:
         places = np.arange(n_bars)
         looks = {"capsize": 2, "height": 0.36, "error_kw": {"elinewidth": 0.8}}
         panel.barh(
-            places + 0.19, found.first[order], xerr=found.first_interval[order], color=BLUE, label="alone", **looks
+            places + 0.19,
+            found.first[order],
+            xerr=found.first_interval[order],
+            color=BLUE,
+            label="first order",
+            **looks,
         )
         panel.barh(
             places - 0.19, found.total[order], xerr=found.total_interval[order], color=SKY, hatch="//",
-            label="with all others", **looks,
+            label="total", **looks,
         )  # fmt: skip
         panel.set_yticks(places, [names[one] for one in order])
         panel.set_xlim(left=min(0.0, panel.get_xlim()[0]))

@@ -89,16 +89,16 @@ def judge_cage(
     stations, n_stations, is_out, n_tried = search_way_out(scene, frame, search_s, progress)
     if is_out:
         path = _path(frame, stations, n_stations - 1)
-        reason = f"a way out of {len(path)} {'motion' if len(path) == 1 else 'motions'} was found"
+        reason = f"an escape path of {len(path)} {'motion' if len(path) == 1 else 'motions'} was found"
         return CageVerdict("escapes", reason, free_directions, path, None, n_tried), np.asarray(stations)[:0]
     reason, leaves_at = why_not_caged(scene, frame, bounds, free_directions)
-    searched = "no way out was found" if n_tried else "no way out was looked for"
+    searched = "no way out was found" if n_tried else "no way out was searched"
     verdict = CageVerdict("not certified", f"{reason}; {searched}", free_directions, None, leaves_at, n_tried)
     return verdict, np.asarray(stations)[:n_stations]
 
 
 def is_caged(what: str) -> CageVerdict:
-    return CageVerdict("caged", f"every pose on the way out puts {what} inside the object", (), None, None, 0)
+    return CageVerdict("caged", f"every pose on any way out puts {what} inside the object", (), None, None, 0)
 
 
 def why_not_caged(
@@ -111,16 +111,16 @@ def why_not_caged(
     if certificate.outcome == FREE:
         return f"nothing limits {' '.join(free_directions)}", None
     if certificate.outcome == UNSOLVED:
-        return "the gaps depend on each other up to rounding, and a linear program has no sure answer", None
+        return "the gaps depend on each other within rounding, so that the linear program is undecided", None
     turn_deg = np.degrees(np.linalg.norm(certificate.turn))
     if certificate.worst < 0:
-        return f"the object turns by up to {turn_deg:.3g} deg, and the proof takes less than a radian", None
+        return f"the object turns by up to {turn_deg:.3g} deg, and the proof holds below 57 deg only", None
     pair = int(certificate.worst)
     point = scene.cage.names[pair // frame.geometry.n_own_boxes]
     box = scene.object.boxes[pair % frame.geometry.n_own_boxes].name
     if certificate.outcome == RAN_OFF:
         way = "may run off its face of" if proof.status[pair] == OFF_EDGE else "may come out behind its face of"
-        reason = f"{point} {way} {box}, and without it the object is not held"
+        reason = f"{point} {way} {box}, and the object is not held without it"
         twist = proof.lost_at[pair]
         if not np.isfinite(twist).all():
             return reason, None
@@ -130,8 +130,8 @@ def why_not_caged(
             f"{reason}; it is farthest off, to first order, after roll {roll:.4g}, pitch {pitch:.4g}, yaw {yaw:.4g} deg"
         ), frame.pose_after(position, quaternion)
     return (
-        f"the play is too large for the proof: what linearising the gap of {point} to {box} leaves out grows faster"
-        f" than the room it is given (turns up to {turn_deg:.3g} deg)"
+        f"the play is too large for the proof: the linearisation error of the gap of {point} to {box} is too great"
+        f" (turns up to {turn_deg:.3g} deg)"
     ), None
 
 

@@ -15,16 +15,19 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.scope import check_boxes_and_points
 from cagepose.model.wording import components, counted
+from cagepose.runs.changes import mode_of
 from cagepose.runs.run import AT_REST, Event, Motion, PhaseRun, Run, Verdict
 from cagepose.runs.solve import run
 from cagepose.studies.tolerances import SAME_POSE_OF_SIZE
 
+METRICS: dict[Metric, str] = {"release": "by inertia", "drag": "by drag"}
+"""What decides how the object starts to move."""
 GROUNDS = {
-    "free": "nothing holds it back",
-    "escapes": "nothing is ahead",
-    "slide": "the contacts cannot hold it, and those that carry slide",
-    "pivot": "the contacts cannot hold it, but friction makes one of them stick",
-    "driven": "bodies of the cage are driven, and it gives way to them as it stays in balance",
+    "free": "no contact resists",
+    "escapes": "no contact is ahead",
+    "slide": "the contacts do not balance the load, and those with a force slide",
+    "pivot": "the contacts do not balance the load, but one of them sticks by friction",
+    "driven": "bodies of the cage are driven and move it, always in equilibrium",
     **dict.fromkeys(("A-1", "B-1"), "no contact, so along the load"),
     **dict.fromkeys(("A-2", "B-2"), "about its one contact, taken as fixed, along the load's moment"),
     **dict.fromkeys(("A-3", "B-3"), "about the line through two contacts, taken as fixed"),
@@ -33,14 +36,14 @@ GROUNDS = {
 }
 """Why a rule moves the object as it does."""
 ENDS: dict[Verdict, str] = {
-    "escapes": "nothing is ahead",
+    "escapes": "no contact is ahead",
     "spins": "a full turn meets nothing",
     "cycling": "a pose came back",
     "stalled": "no progress",
     "limit": "too many events",
-    "blocked": "no motion of the object lets the drive go on",
-    "jams": "with friction there is no way on for the drive; without, there would be one",
-    "stops": "the drive needs as much force as it may have",
+    "blocked": "no motion of the object makes way for the drive",
+    "jams": "friction alone stops the drive",
+    "stops": "the drive has reached its force limit",
 }
 """Why a run ends that does not end at rest, or why a drive does."""
 
@@ -126,7 +129,7 @@ def compare(scene: Scene, frictions: Sequence[float] | None = None) -> Compariso
     variants = [Variant("stepwise", own, run(scene, "stepwise"))]
     for friction in dict.fromkeys((0.0, own) if frictions is None else frictions):
         for metric in get_args(Metric):
-            label = f"quasistatic, {metric}, friction {friction:.4g}"
+            label = f"quasistatic, {METRICS[metric]}, friction {friction:.4g}"
             changed = scene.changed(friction_coefficient=friction, metric=metric)
             variants.append(Variant(label, friction, run(changed, "quasistatic")))
     partings = [parting_of(variants[0], variant) for variant in variants[1:]]
@@ -175,7 +178,7 @@ def _says(variant: Variant, phase: PhaseRun, event: Event | None) -> str:
     name = variant.run.method
     if event is None or event.motion is None:
         return f"{name} ends: {phase.verdict} ({_ground_of_end(phase)})"
-    return f"{name} {_moves(event.motion)} ({event.rule}: {GROUNDS[event.rule]})"
+    return f"{name} {_moves(event.motion)} ({mode_of(event.rule)}: {GROUNDS[event.rule]})"
 
 
 def _ground_of_end(phase: PhaseRun) -> str:

@@ -92,7 +92,7 @@ def _driven_phase(scene: Scene, phase: str | None) -> int:
     expect_choice(name, driven, "phase")
     number = [load.name for load in scene.loads].index(name)
     if scene.loads[number].press:
-        message = "is of a phase in which bodies press, too, of which an insertion does not know; ask cagepose run"
+        message = "is a phase in which bodies press, which insertion does not support; use cagepose run"
         raise SceneError([Problem(("phase",), message)])
     return number
 

@@ -23,7 +23,7 @@ from cagepose.studies.pushes import unseated
 from cagepose.studies.seat import seated as seated_pushes
 from cagepose.studies.tolerances import PROVEN_WITHIN
 
-NO_INNER_CAGE = "bounds are known of the object's boxes alone, among points and solid shapes over their faces"
+NO_INNER_CAGE = "bounds can be proven only for boxes of the object, among points and solid shapes over their faces"
 SEARCH_S = 2.0
 """Seconds that the search for a way out may take, if the object is not proven to be caged."""
 

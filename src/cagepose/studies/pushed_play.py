@@ -211,7 +211,7 @@ class PushedPlay:
             after = f" after {n_before} other {'push' if n_before == 1 else 'pushes'}" if n_before else ""
             reason = f"pushed {self._escape_by}{after}, it gets out"
             return CageVerdict("escapes", reason, self.free_directions(), self._path(self.escape), None, n_tried)
-        searched = f"no way out was found by {n_tried} random pushes" if n_tried else "no way out was looked for"
+        searched = f"{n_tried} random pushes found no way out" if n_tried else "no way out was searched"
         return CageVerdict("not certified", f"{why_not}; {searched}", self.free_directions(), None, leaves_at, n_tried)
 
     def _note_escape(self, chain: Chain, by: str) -> None:

@@ -42,6 +42,6 @@ def seated(scene: Scene, phase: str) -> Pushes:
             why = "friction alone keeps it there"
         others = [name for name in names if name != phase]
         which = f", such as {few(others)}" if others else ""
-        raise SceneError([Problem(("phase",), f"is {phase!r}, and {why}; ask about another phase{which}")])
+        raise SceneError([Problem(("phase",), f"is {phase!r}, and {why}; choose another phase{which}")])
     pushes.start = settled.pose
     return pushes

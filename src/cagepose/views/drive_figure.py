@@ -88,8 +88,8 @@ def _force_label(drives: Sequence[DriveCurves], scene: Scene, unit: LengthUnit) 
     one = units.pop() if len(units) == 1 else "N or load"
     turns = {leg.is_turn for drive in drives for legs in drive.load.drive.values() for leg in legs}
     if turns == {True}:
-        return with_unit("driver's moment", f"{one} {unit}")
-    return with_unit("driver's force", one) + (f", moment [{one} {unit}]" if True in turns else "")
+        return with_unit("drive moment", f"{one} {unit}")
+    return with_unit("drive force", one) + (f", moment [{one} {unit}]" if True in turns else "")
 
 
 def draw_force(panel: Axes, drive: DriveCurves, unit: LengthUnit) -> None:
@@ -162,8 +162,8 @@ def _draw_marks(panel: Axes, drive: DriveCurves) -> None:
 
 def _draw_legend(figure: Figure, drives: Sequence[DriveCurves]) -> None:
     handles: list[Line2D | Patch] = [
-        Patch(label="touches, of a body that is driven", alpha=0.75, linewidth=0.0, **TOUCHING[True]),
-        Patch(label="touches, of the cage that stands", alpha=0.75, linewidth=0.0, **TOUCHING[False]),
+        Patch(label="contact with a driven body", alpha=0.75, linewidth=0.0, **TOUCHING[True]),
+        Patch(label="contact with the fixed cage", alpha=0.75, linewidth=0.0, **TOUCHING[False]),
     ]
     if any(drive.snaps for drive in drives):
         handles.append(Line2D([], [], label="snaps", **SNAP))

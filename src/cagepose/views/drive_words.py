@@ -11,9 +11,9 @@ from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import STOPPED, PhaseRun, Run, Verdict
 
 STOPS: Mapping[Verdict, str] = {
-    "blocked": "no motion of the object lets the drive go on, whatever the friction",
-    "jams": "without friction the drive would go on; with it there is no way on",
-    "stops": "the force was reached at which the drive is to stop",
+    "blocked": "no motion of the object makes way for the drive, with any friction",
+    "jams": "friction alone stops the drive",
+    "stops": "the drive has reached the force or moment of stop_at",
 }
 """What verdicts of a drive that does not go on mean."""
 
@@ -29,7 +29,7 @@ def how_far(phase: PhaseRun, length_unit: LengthUnit) -> str:
         told = (f"{name} after {_length(body.travel_m, length_unit)}" for name, body in phase.press.bodies.items())
         return f" with what presses ({'; '.join(told)})"
     if phase.drive is None:
-        return " where the drive begins" if phase.verdict in STOPPED else ""
+        return " at the start of the drive" if phase.verdict in STOPPED else ""
     ways = []
     for name, body in phase.drive.bodies.items():
         amounts = []

@@ -16,7 +16,7 @@ from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
 from cagepose.model.scene import Scene
-from cagepose.runs.changes import Seen, changes_of
+from cagepose.runs.changes import Seen, changes_of, mode_of
 from cagepose.runs.driven_cage import cage_at_end
 from cagepose.runs.on_the_way import DRIVEN
 from cagepose.runs.run import Run
@@ -121,7 +121,7 @@ def _snapshots(run: Run, length_unit: LengthUnit) -> tuple[list[tuple[int, str]]
         share = change.event.share
         goes_on = change.event.rule == DRIVEN
         if change.seen is not None or goes_on:
-            name = f"{change.number}. {_cut(change.phase.name)}, {change.event.rule}:"
+            name = f"{change.number}. {_cut(change.phase.name)}, {mode_of(change.event.rule)}:"
             amounts = [_amount(change.seen, length_unit)] if change.seen is not None else []
             amount = "; ".join([*amounts, *([f"{share_words(share)} of the drive"] if goes_on else [])])
             gap = " " if len(name) + len(amount) < LONGEST_TITLE else "\n"
@@ -141,7 +141,7 @@ def _snapshot(stage: Stage, row: int) -> FloatArray:
 
 def _amount(motion: Seen, length_unit: LengthUnit) -> str:
     if not math.isfinite(motion.distance_m):
-        return "travel, nothing ahead"
+        return "travel, no contact ahead"
     parts = []
     if motion.distance_m:
         parts.append(f"{float(from_metres(motion.distance_m, length_unit)):.4g} {length_unit}")
@@ -226,7 +226,7 @@ def _position(region: SupportRegion | None, size_m: float, length_unit: LengthUn
     if region is None:
         return "support not known"
     if math.isinf(region.margin_m):
-        return "the contacts balance it nowhere" if region.margin_m < 0.0 else "the contacts balance it anywhere"
+        return "no CoG is balanced" if region.margin_m < 0.0 else "any CoG is balanced"
     if abs(region.margin_m) < DISTANCE_OF_EDGE * size_m:
         return "CoG on the edge of support"
     margin = float(from_metres(abs(region.margin_m), length_unit))
@@ -243,7 +243,7 @@ def _axis_name(axis_world: np.ndarray) -> str:
 
 def _draw_legend(figure: Figure, scene: Scene) -> None:
     point: Look = {"marker": "o", "linestyle": "none"}
-    support = Patch(facecolor="none", edgecolor=GREEN, hatch="//", label="support region: a weight is balanced")
+    support = Patch(facecolor="none", edgecolor=GREEN, hatch="//", label="support region: the weight is balanced")
     bodies = Patch(facecolor=SAND, edgecolor=BROWN, alpha=0.5, label="shape of the cage")
     patches = [*([bodies] if scene.cage.shapes else []), support]
     figure.legend(

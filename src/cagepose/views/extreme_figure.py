@@ -24,9 +24,9 @@ def extreme_figure(play: Play, length_unit: LengthUnit = "mm") -> Figure:
     Small motions are drawn larger than they are; each picture says how many times.
     """
     ends = [
-        (f"{word} {name}: {_amount(end, name, length_unit)}", end)
+        (f"{word} {name}: {_amount(end, bound, name, length_unit)}", end)
         for name, ends in play.freedoms.items()
-        for word, end in (("least", ends.low), ("greatest", ends.high))
+        for word, bound, end in (("least", "at most ", ends.low), ("greatest", "at least ", ends.high))
     ]
     rows = math.ceil(len(ends) / COLUMNS)
     with styled():
@@ -48,10 +48,10 @@ def _picture(play: Play, end: PlayEnd, length_unit: LengthUnit) -> np.ndarray:
     return np.asarray(PictureMaker(Stage(film), size=PICTURE, is_near=True).picture(film.shots[-1]))
 
 
-def _amount(end: PlayEnd, name: str, length_unit: LengthUnit) -> str:
+def _amount(end: PlayEnd, bound: str, name: str, length_unit: LengthUnit) -> str:
     if end.reached is None:
-        return "no end"
-    word = "past " if end.exact is None else ""
+        return "unlimited"
+    word = bound if end.exact is None else ""
     if name in ("x", "y", "z"):
         return f"{word}{float(from_metres(end.reached, length_unit)):.4g} {length_unit}"
     return f"{word}{math.degrees(end.reached):.4g} deg"

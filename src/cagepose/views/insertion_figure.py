@@ -41,13 +41,13 @@ def insertion_figure(insertion: Insertion, length_unit: LengthUnit = "mm") -> Fi
         force, friction, *bars = figure.subplots(len(heights), 1, height_ratios=heights)
         if insertion.ended is None or insertion.drive is None:
             for panel in (force, friction):
-                panel.text(0.5, 0.5, "the drive did not begin", ha="center", transform=panel.transAxes)
+                panel.text(0.5, 0.5, "the drive did not start", ha="center", transform=panel.transAxes)
                 panel.set_axis_off()
         else:
             curves = drive_curves(scene, insertion.ended, load, length_unit)
             draw_force(force, curves, length_unit)
             set_force_limits(force, [curves])
-            force.set_ylabel(with_unit("driver", "N" if force_unit(scene, load) == "N" else "load"))
+            force.set_ylabel(with_unit("drive force", "N" if force_unit(scene, load) == "N" else "load"))
             _draw_jam(friction, insertion, curves)
             for panel in (force, friction):
                 for begins, ends in insertion.drive.jam_possible:
@@ -75,12 +75,12 @@ def _draw_jam(panel: Axes, insertion: Insertion, curves: DriveCurves) -> None:
         fontsize=8.0,
     )
     if np.isnan(least).all():
-        told = f"no friction up to {MOST_SHOWN:g} lets it jam"
+        told = f"no friction up to {MOST_SHOWN:g} makes it jam"
         panel.text(0.5, 0.6, told, ha="center", transform=panel.transAxes, color=GREY)
         panel.set_ylim(0.0, max(1.0, 1.3 * insertion.friction))
     else:
         panel.set_ylim(0.0, 1.15 * max(float(np.nanmax(least)), insertion.friction, 0.1))
-    panel.set_ylabel("jams from\nfriction on")
+    panel.set_ylabel("least friction\nto jam")
     panel.grid(axis="y", color=PALE, linewidth=0.6)
     panel.set_axisbelow(True)
 
@@ -101,7 +101,7 @@ def _draw_permitted(
     panel.set_xlim(-1.75 * reach, 1.75 * reach)
     panel.set_ylim(len(names) - 0.5, -0.5)
     panel.set_yticks(range(len(names)), names)
-    panel.set_xlabel(f"may be out of place by [{unit}]")
+    panel.set_xlabel(f"permitted misalignment [{unit}]")
     panel.grid(axis="x", color=PALE, linewidth=0.6)
     panel.set_axisbelow(True)
 

@@ -128,7 +128,7 @@ def _draw_outline(panel: Axes, outline: PointOutline, length_unit: LengthUnit) -
         panel.set_ylim(-reach, reach)
         for way in reach * outline.no_end:
             panel.annotate("", ARROW_TO * way, ARROW_FROM * way, arrowprops=ARROW)
-        told.append("no end along the arrows" if len(outline.no_end) else "no end in some directions")
+        told.append("unlimited along the arrows" if len(outline.no_end) else "unlimited in some directions")
     if len(outline.not_converged):
         for x, y in from_metres(outline.not_converged, length_unit):
             _draw_doubt(panel, x, y)

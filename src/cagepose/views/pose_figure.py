@@ -21,6 +21,7 @@ from matplotlib.ticker import MaxNLocator
 
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.checks import FloatArray
+from cagepose.runs.changes import mode_of
 from cagepose.runs.run import Event, Frame, Run
 from cagepose.studies.ending import ending
 from cagepose.views.style import BLACK, GREEN, GREY, PAGE_WIDTH_IN, PALE, PURPLE, SERIES, VERMILLION, Look, styled
@@ -170,7 +171,7 @@ def _name_rules(panel: Axes, steps: _Steps) -> None:
         place = (first + last) / 2.0
         if place - last_place >= room:
             panel.annotate(
-                event.rule,
+                mode_of(event.rule),
                 (place, 1.02),
                 xycoords=("data", "axes fraction"),
                 rotation=90.0,
@@ -190,6 +191,6 @@ def _draw_legend(figure: Figure, run: Run, steps: _Steps) -> None:
         ends = " and ".join(phase.name for phase in run.phases[:-1])
         handles.append(Line2D([], [], color=VERMILLION, linestyle=(0, (5, 3)), label=f"end of phase {ends}"))
     dot: Look = {"color": BLACK, "marker": "o", "linestyle": "none", "markersize": 5.0}
-    handles.append(Line2D([], [], label="reached by this motion", **dot))
-    handles.append(Line2D([], [], label="touches as well", markerfacecolor="white", **dot))
+    handles.append(Line2D([], [], label="new contact", **dot))
+    handles.append(Line2D([], [], label="old contact", markerfacecolor="white", **dot))
     figure.legend(handles=handles, loc="outside lower center", ncols=3, handlelength=2.6)

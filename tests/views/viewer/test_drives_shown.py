@@ -155,13 +155,13 @@ def test_words_tell_how_far_a_drive_got_and_why_it_went_no_farther(closed: Run, 
     film = playback(closed)
     assert notes(film)[0] == (
         "close: blocked at 83.33 % of the drive (left by 25 mm; right by 25 mm):"
-        " no motion of the object lets the drive go on, whatever the friction"
+        " no motion of the object makes way for the drive, with any friction"
     )
     rows = page_data(film)["rows"]
     assert [row["drive"] for row in rows] == ["", "to 44.17 % of the drive", "to 83.33 % of the drive"]
     assert how_far(turned.phases[1], "mm") == " at 100 % of the drive (left by 10 mm, 5 deg; right by 10 mm, 5 deg)"
     assert how_far(turned.phases[2], "mm") == ""
-    assert how_far(replace(turned.phases[0], drive=None), "mm") == " where the drive begins"
+    assert how_far(replace(turned.phases[0], drive=None), "mm") == " at the start of the drive"
     units = [drive_data(turned, phase, "mm") for phase in (0, 1)]
     assert [found and found["unit"] for found in units] == ["N", "N"]
 

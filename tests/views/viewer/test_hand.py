@@ -143,8 +143,8 @@ def test_a_pull_without_an_answer_is_told_and_the_last_answer_stays(
         page = opened(watched, server)
         before = shown_angles(page)
         with held(page, (0.0, -60.0)):
-            assert "no end was found within 0.001 s" in page.locator("#problems").inner_text()
-            assert "Shown is the last answer." in page.locator("#problems").inner_text()
+            assert "no rest was found within 0.001 s" in page.locator("#problems").inner_text()
+            assert "The picture shows the last answer." in page.locator("#problems").inner_text()
             assert shown_angles(page) == before
         watched.complaints.clear()  # the browser notes the refusal itself
 

@@ -240,7 +240,7 @@ def test_a_part_of_the_cage_that_is_clicked_tells_its_gaps_and_so_does_its_name(
     wait_until(page, f"gapsof.innerText === 'of {name}'")
     page.locator("#first").click()
     page.evaluate("() => { time.value = 1.5; time.dispatchEvent(new Event('input')); }")
-    wait_until(page, "gapnote.innerText.startsWith('Known where a motion ends')")
+    wait_until(page, "gapnote.innerText.startsWith('Gaps are known at the end')")
     assert state(page)["dimensions"] == []
 
 

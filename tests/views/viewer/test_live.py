@@ -69,7 +69,7 @@ def test_a_value_that_cannot_be_is_told_in_the_page_and_the_last_scene_stays(wat
     slide(page, "push: direction x", 0)
     told = page.locator("#problems").inner_text()
     assert "is all zeros, which points nowhere" in told
-    assert "Shown is the last scene that could be run" in told
+    assert "The picture shows the last scene that could be run" in told
     assert shown_angles(page) == before
     watched.complaints.clear()  # the browser notes the refusal itself
     page.locator("#undo").click()

@@ -13,6 +13,7 @@ from PIL import ImageColor
 
 from cagepose import Cage, Scene, load_scene, run
 from cagepose.files.write import MADE_BY
+from cagepose.runs.changes import mode_of
 from cagepose.views.viewer.caption import VERDICT_INK
 from cagepose.views.viewer.page import page
 from cagepose.views.viewer.playback import playback
@@ -58,7 +59,7 @@ def test_the_page_opens_at_the_end_with_the_verdict_and_the_forces(opened, rail)
         if contact.force_normal_n > 1e-9
     }
     idle = len(rail.run.contacts) - len(shown)
-    assert page.locator("#forces tr").last.inner_text() == f"{idle} more touch without a force"
+    assert page.locator("#forces tr").last.inner_text() == f"{idle} more without a force"
     origin = page.locator("#pose dd").first.inner_text()
     assert [float(word) for word in origin.removesuffix(" mm").split(", ")] == pytest.approx(
         (rail.run.pose.position_m * 1000.0).tolist(), rel=1e-5
@@ -86,7 +87,11 @@ def test_every_event_has_a_line_and_a_click_goes_to_its_end(opened, rail):
         assert lines.nth(index).get_attribute("class").split()[-1] == "now"
         cells = lines.nth(index).locator("td").all_inner_texts()
         event, after = row.event, frozenset(row.event.contacts)
-        assert (cells[2], set(cells[5].split()), set(cells[6].split())) == (event.rule, after - before, before - after)
+        assert (cells[2], set(cells[5].split()), set(cells[6].split())) == (
+            mode_of(event.rule),
+            after - before,
+            before - after,
+        )
         assert lines.nth(index).get_attribute("title") == f"touching: {', '.join(event.contacts)}"
         before = after
 

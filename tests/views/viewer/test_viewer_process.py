@@ -44,9 +44,9 @@ def viewer(*options: str) -> Iterator[Viewer]:
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **heeding)
     try:
         said = [process.stdout.readline()]
-        if "look at" not in said[-1]:
+        if ": open " not in said[-1]:
             said.append(process.stdout.readline())
-        yield Viewer(process, said[-1].split("look at ")[1].split()[0], said)
+        yield Viewer(process, said[-1].split(": open ")[1].split()[0], said)
     finally:
         process.kill()
         process.communicate()
@@ -67,7 +67,7 @@ def test_a_taken_port_gives_the_next_free_one_and_says_so():
     with socket.create_server((HOST, free_port())) as taken:
         port = taken.getsockname()[1]
         with viewer("--port", str(port)) as shown:
-            assert shown.said[0] == f"port {port} is taken; using {shown.address.rstrip('/').rsplit(':', 1)[1]}\n"
+            assert shown.said[0] == f"port {port} is in use; using {shown.address.rstrip('/').rsplit(':', 1)[1]}\n"
             with urlopen(shown.address, timeout=10) as answer:
                 assert b'id="scene"' in answer.read()
             assert shown.end() == ENDED

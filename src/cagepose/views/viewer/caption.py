@@ -8,6 +8,7 @@ from typing import NamedTuple
 from PIL import Image, ImageDraw, ImageFont
 
 from cagepose.files.words import LengthWords
+from cagepose.runs.changes import mode_of
 from cagepose.runs.run import CONTRADICTED, Run
 from cagepose.studies.ending import Kind, run_kind
 from cagepose.views.drive_words import share_words
@@ -89,7 +90,7 @@ class Caption:
         motion = row.seen
         what = None if motion is None else f"{motion.kind} {words.amount(motion)}"
         far = f"{share_words(shot.share)} of the drive" if shot.share else None
-        told = ", ".join(word for word in (row.event.rule, what, far, row.verdict) if word)
+        told = ", ".join(word for word in (mode_of(row.event.rule), what, far, row.verdict) if word)
         return f"{run.phases[row.phase].name}, event {shot.row + 1}: {told}"
 
     def _write_exaggeration(self, pen: ImageDraw.ImageDraw, times: int) -> None:

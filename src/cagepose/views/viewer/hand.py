@@ -64,12 +64,12 @@ def grips(run: Run) -> list[dict[str, Any]]:
 def _grip(run: Run, phase: int) -> dict[str, Any]:
     ended = run.phases[phase]
     if run.method != METHOD:
-        return {"refused": f"The {run.method} method knows one force alone; to pull by hand, choose {METHOD}."}
+        return {"refused": f"The {run.method} method takes a single force; to pull by hand, choose {METHOD}."}
     if ended.verdict not in GOES_ON:
-        return {"refused": f"Nobody can pull from here: {ended.name} ended with “{ended.verdict}”, which is no rest."}
+        return {"refused": f"To pull by hand the part must be at rest; {ended.name} ended with “{ended.verdict}”."}
     found = measure(run, phase)
     if found is None:
-        return {"refused": f"Nothing acts on the part in {ended.name}, so that it rests nowhere when it is let go."}
+        return {"refused": f"Nothing acts on the part in {ended.name}, so it would not come to rest when you let go."}
     return {"greatest": found.greatest, "unit": found.unit, "of": found.of}
 
 
@@ -161,7 +161,7 @@ def _thinned(way: Sequence[Place]) -> list[Place]:
 def _words(found: Run, grip: Grip, length_unit: LengthUnit) -> str:
     last, is_pulled = found.phases[-1], bool(grip.force.any())
     if last.verdict == "escapes":
-        return "gets away; let go, and it is back at its last rest" if is_pulled else "gets away under its own loads"
+        return "escapes; let go, and it is back at its last rest" if is_pulled else "escapes under its own loads"
     if last.verdict not in GOES_ON:
         return f"no rest found ({last.verdict}); the next pull begins at its last rest"
     if is_pulled:

@@ -15,7 +15,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.shapes import Capsule, Shape, Sphere, Turned
 from cagepose.model.wording import duration
 from cagepose.runs.cases import contact_friction
-from cagepose.runs.changes import Change, changes_of
+from cagepose.runs.changes import Change, changes_of, mode_of
 from cagepose.runs.driven_cage import CageAt
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.methods import chosen_method
@@ -218,7 +218,7 @@ class _Writer:
         motion = row.seen
         return {
             "phase": row.phase,
-            "rule": row.event.rule,
+            "rule": mode_of(row.event.rule),
             "motion": "" if motion is None else motion.kind,
             "amount": "" if motion is None else self.words.amount(motion, AMOUNT_DIGITS),
             "drive": f"to {share_words(row.event.share)} of the drive" if row.event.rule == DRIVEN else "",
