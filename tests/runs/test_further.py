@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bench.pulls_table import depth_of_size
-from cagepose import Load, Run, Scene, load_scene, run
+from cagepose import Force, Load, Run, Scene, load_scene, run
 from cagepose.runs.further import GOES_ON, Place, further, way_of
 from cagepose.runs.pull import measure, pulled_load
 
@@ -67,6 +67,19 @@ def test_no_pull_gets_the_part_into_its_cage_and_each_goes_on_from_the_one_befor
             row = [*led.pose.position_m, *led.pose.quaternion_wxyz]
             assert depth_of_size(found, last, row) <= 2.0 * found.scene.tolerances.touch
     assert rests >= 4
+
+
+def test_a_pull_goes_beside_a_force_that_stays_where_it_is_in_the_world() -> None:
+    scene = load_scene(SCENES / "drawer.yaml")
+    belt = Load(
+        "belt", gravity=(0.0, 0.0, -9.81), force=Force((0.0, 0.0, -1.0), at_world_m=(0.0, 0.0, 0.0), magnitude_n=1.0)
+    )
+    with_belt = Scene(scene.object, scene.cage, [belt], friction_coefficient=scene.friction_coefficient)
+    found = run(with_belt)
+    again = pulled(found, [], np.array((0.0, 0.0, -0.1)), np.zeros(3))
+    assert again.phases[-1].verdict == found.phases[-1].verdict
+    total = -sum(contact.force_normal_n or 0.0 for contact in again.contacts)
+    assert total < -sum(contact.force_normal_n or 0.0 for contact in found.contacts)
 
 
 def test_a_pull_beside_a_weight_without_mass_is_told_in_parts_of_it() -> None:

@@ -46,6 +46,7 @@ BESIDE = {
     "round bars side by side": (Cylinder(0.01, 0.1), Cylinder(0.005, 0.02, Pose((0, 0.018, 0.01))), 0.003),
     "rim to rim": (Cylinder(0.01, 0.02), Cylinder(0.01, 0.02, Pose((0.023, 0, 0.024))), 0.005),
     "corner to rim": (CUBE, Cylinder(0.01, 0.02, Pose((0.01 + 0.023, 0.01, 0.024))), math.hypot(0.013, 0.004)),
+    "farther than the scene is large": (Sphere(0.01), Sphere(0.01, Pose((0.05, 0.0, 0.0))), 0.03),
     "end to plate": (Cylinder(0.01, 0.02), Box((0.1, 0.1, 0.01), Pose((0, 0, -0.017))), 0.002),
 }
 

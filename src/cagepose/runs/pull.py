@@ -52,7 +52,13 @@ def pulled_load(scene: Scene, phase: int, name: str, force: FloatArray, at_objec
     weighed = scaled_load(scene, load)
     gravity = load.gravity_world if weighed.in_newtons else None
     pulls = [
-        Force(push.direction, push.at_object_m, float(np.linalg.norm(row)), follows=push.follows)
+        Force(
+            push.direction,
+            push.at_object_m,
+            float(np.linalg.norm(row)),
+            at_world_m=push.at_world_m,
+            follows=push.follows,
+        )
         for push, row in zip(load.pushes, weighed.forces, strict=True)
     ]
     if gravity is None and weighed.gravity.any():

@@ -105,7 +105,7 @@ class GapFinder:
             least_failed, reach_m = reach_m, reach_m / FARTHER
             rows = self._rows(pose, reach_m)
         rows = NO_GAPS if rows is None else rows
-        while FARTHER * reach_m < min(least_failed, FARTHEST * size_m):
+        while FARTHER * reach_m < least_failed and FARTHER * reach_m <= FARTHEST * size_m:
             is_known = len(touching | set(rows.elements.tolist())) == everything
             if len(rows.elements) >= ENOUGH or (is_known and reach_m >= USUAL_REACH * size_m):
                 break
