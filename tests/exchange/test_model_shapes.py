@@ -124,7 +124,7 @@ def test_a_flat_mesh_is_left_out_and_each_run_warns(tmp_path):
     scene, notes, *_ = imported(str(written(tmp_path, part_dot_obj=flat, p_dot_xml=mjcf(body, asset=ASSET))))
     assert "left out: 'part', a mesh without volume; give it a thickness" in notes
     assert scene.left_out == ("part",)
-    assert any("has part, too" in warning for warning in run(scene).warnings)
+    assert any("also has part" in warning for warning in run(scene).warnings)
 
 
 def with_frame(mesh: str) -> str:
