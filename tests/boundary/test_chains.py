@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -46,6 +47,16 @@ def cross_bored() -> Any:
     return BRepAlgoAPI_Cut(rod(), hole).Shape()
 
 
+def cut_aslant(lean: float) -> Any:
+    """Return a rod that a plane which leans about y has cut."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
+    upwards = gp_Ax2(gp_Pnt(0.0, 0.0, 22.0), gp_Dir(math.sin(lean), 0.0, math.cos(lean)))
+    return BRepAlgoAPI_Cut(rod(), BRepPrimAPI_MakeCylinder(upwards, 90.0, 90.0).Shape()).Shape()
+
+
 PARTS = {
     "bored across": lambda: facets_on_surfaces(triangles_of(cross_bored(), within=True), "part"),
     "cut aslant": lambda: without(rod(), (-45.0, -45.0, 20.0), 0.5),
@@ -64,6 +75,21 @@ def test_a_rod_lies_on_its_side(name, cases):
         along = done.pose.transform(np.array([[0.0, 0.0, 4.0], [0.0, 0.0, 16.0]]))[:, 2]
         assert done.verdict == "rests"
         assert along == pytest.approx(RADIUS, abs=1e-6)
+
+
+def test_a_rod_that_slides_along_one_wall_of_a_groove_does_not_pass_through_the_other():
+    """Its end is cut at 20 degrees. Within one step, the arc beside the one that slides seems to be reached first."""
+    shape = facets_on_surfaces(triangles_of(cut_aslant(math.radians(20.0)), within=True), "part").shape
+    start = Pose(
+        (1.2141321637705333, 2.022329010680191, 4.0425592885167195),
+        (0.8405370587058975, 0.30595738215511553, 0.38691994635107757, -0.22401001844227125),
+    )
+    aside = 100.0 * math.sqrt(0.5)
+    walls = [
+        Box((100.0, 400.0, 100.0), Pose((x, 0.0, 0.0), euler_zyx=(0.0, math.pi / 4.0, 0.0))) for x in (-aside, aside)
+    ]
+    weight = Load("weight", gravity=(0.0, 0.0, -9.81))
+    assert run(Scene(Object(shapes=[shape], pose=start), Cage(shapes=walls), [weight])).verdict == "rests"
 
 
 def test_facets_keep_their_corners_where_round_faces_are_off_theirs(cases):
