@@ -15,7 +15,6 @@ from cagepose.model.load import Load
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.model.spring import Spring
 from cagepose.model.surface import shape_mesh
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
 from cagepose.model.wording import few
@@ -158,23 +157,11 @@ def _left(done: Run, index: int, there: MujocoRest, points: FloatArray) -> float
     """
     scene, held = done.scene, done.scene.object
     touch = max(scene.tolerances.touch, 2.0 * there.penetration_m / scene.size_m)
-    moved = Object(
-        held.boxes,
-        held.center_of_gravity_m,
-        shapes=held.shapes,
-        holes=held.holes,
-        pose=there.pose,
-        mass_kg=held.mass_kg,
-        inertia_kg_m2=held.inertia_kg_m2,
-    )
     try:
-        again = Scene(
-            moved,
-            scene.cage,
-            [_from(scene.cage, scene.loads[index], held.pose_world_object, there.pose)],
-            friction_coefficient=scene.friction_coefficient,
-            friction_of=scene.friction_of,
-            metric=scene.metric,
+        again = scene.but_for(
+            object=held.starting_at(there.pose),
+            loads=[_from(scene.cage, scene.loads[index], held.pose_world_object, there.pose)],
+            method=None,
             tolerances=Tolerances(min(touch, TOUCH_GREATEST), scene.tolerances.grazing_band_rad),
         )
     except SceneError:
@@ -185,18 +172,8 @@ def _left(done: Run, index: int, there: MujocoRest, points: FloatArray) -> float
 
 def _from(cage: Cage, load: Load, start: Pose, other: Pose) -> Load:
     """Return a load for another start: a spring's preload is its tension at the start."""
-
-    def length_m(spring: Spring, pose: Pose) -> float:
-        return float(np.linalg.norm(cage.spring_end_world(spring) - pose.transform(spring.at_object_m)))
-
     springs = [
-        Spring(
-            spring.at_object_m,
-            spring.to_m,
-            spring.stiffness_n_per_m,
-            spring.preload_n + spring.stiffness_n_per_m * (length_m(spring, other) - length_m(spring, start)),
-            of=spring.of,
-        )
+        spring.starting_longer(cage.spring_length_m(spring, other) - cage.spring_length_m(spring, start))
         for spring in load.springs
     ]
     return Load(

@@ -150,3 +150,7 @@ class Cage:
             return spring.to_m
         (body,) = (body for body in self.bodies if body.name == spring.of)
         return self.pose_world_cage.transform(body.pose_cage_body.transform(spring.to_m))
+
+    def spring_length_m(self, spring: Spring, pose_world_object: Pose) -> float:
+        """How long a spring is where the cage is as at the start and the object at a pose, metres."""
+        return float(np.linalg.norm(self.spring_end_world(spring) - pose_world_object.transform(spring.at_object_m)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -121,6 +122,12 @@ class Object:
         object.__setattr__(self, "mass_kg", None if mass_kg is None else float(mass_kg))
         object.__setattr__(self, "inertia_kg_m2", inertia)
         object.__setattr__(self, "pose_world_object", pose)
+
+    def starting_at(self, pose: Pose) -> Object:
+        """Return the same object with another start pose."""
+        moved = copy.copy(self)
+        object.__setattr__(moved, "pose_world_object", pose)
+        return moved
 
     def __repr__(self) -> str:
         mass = "" if self.mass_kg is None else f", {self.mass_kg:.6g} kg"

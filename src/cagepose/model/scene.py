@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from inspect import signature
 from typing import Any, get_args
 
 import numpy as np
@@ -251,21 +252,19 @@ class Scene:
         changed: Scene = self
         if key is not None:
             changed = from_above("changed scene")(self, key if isinstance(key, Mapping) else {key: value})
-        if friction_coefficient is None and metric is None and tolerances is None:
-            return changed
-        return Scene(
-            changed.object,
-            changed.cage,
-            changed.loads,
-            name=changed.name,
-            friction_coefficient=changed.friction_coefficient if friction_coefficient is None else friction_coefficient,
-            friction_of=changed.friction_of,
-            method=changed.method,
-            metric=changed.metric if metric is None else metric,
-            tolerances=changed.tolerances if tolerances is None else tolerances,
-            adjustable=changed.adjustable,
-            left_out=changed.left_out,
-        )
+        given = {"friction_coefficient": friction_coefficient, "metric": metric, "tolerances": tolerances}
+        others = {name: value for name, value in given.items() if value is not None}
+        return changed.but_for(**others) if others else changed
+
+    def but_for(self, **others: Any) -> Scene:
+        """Return the scene made again with other arguments, by their names.
+
+        Raises
+        ------
+        SceneError
+            As for a new scene.
+        """
+        return Scene(**{name: getattr(self, name) for name in signature(Scene).parameters} | others)
 
     @property
     def touch_m(self) -> float:

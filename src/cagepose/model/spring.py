@@ -69,6 +69,11 @@ class Spring:
         _set_field(self, "preload_n", float(preload_n))
         _set_field(self, "of", of)
 
+    def starting_longer(self, by_m: float) -> Spring:
+        """Return the same spring for a start at which it is so much longer: with the tension that it has there."""
+        tension = self.preload_n + self.stiffness_n_per_m * by_m
+        return Spring(self.at_object_m, self.to_m, self.stiffness_n_per_m, tension, of=self.of)
+
     def __repr__(self) -> str:
         preload = f", preload {self.preload_n:.6g} N" if self.preload_n else ""
         of = "" if self.of is None else f" of {self.of}"

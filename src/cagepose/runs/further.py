@@ -65,7 +65,8 @@ def further(run: Run, phase: int, load: Load, way: Sequence[Place] = (), within_
         raise ValueError("no phase can begin there")
     scene, ended = run.scene, run.phases[: phase + 1]
     begin = way[-1] if way else Place(ended[-1].pose, dict.fromkeys(load.press, 0.0))
-    whole, alone = (_with_loads(scene, loads) for loads in ((*scene.loads[: phase + 1], load), (load,)))
+    both = (*scene.loads[: phase + 1], load), (load,)
+    whole, alone = (scene.but_for(loads=loads, method=METHOD, adjustable=()) for loads in both)
     displaced = displaced_at(whole, [*map(way_in, ended), PhaseWay(0.0, begin.gone)])
     found = _run_within(within_s, alone, (begin.pose, displaced))
     last = _whole_way(found.phases[0], ended[-1], way, begin, scene)
@@ -95,20 +96,6 @@ def _run_within(seconds: float, scene: Scene, begun: tuple[Pose, np.ndarray]) ->
         raise
     finally:
         clock.cancel()
-
-
-def _with_loads(scene: Scene, loads: Sequence[Load]) -> Scene:
-    return Scene(
-        scene.object,
-        scene.cage,
-        loads,
-        name=scene.name,
-        friction_coefficient=scene.friction_coefficient,
-        friction_of=scene.friction_of,
-        method=METHOD,
-        metric=scene.metric,
-        tolerances=scene.tolerances,
-    )
 
 
 def _whole_way(found: PhaseRun, before: PhaseRun, way: Sequence[Place], begin: Place, scene: Scene) -> PhaseRun:

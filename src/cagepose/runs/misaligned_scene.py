@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from cagepose.model.cage import Cage
 from cagepose.model.cage_body import CageBody
 from cagepose.model.load import Load
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.model.spring import Spring
 from cagepose.runs.misaligned import Misaligned
 
 
@@ -35,37 +32,21 @@ def misaligned_scene(scene: Scene, phase: int, moved: Pose) -> Scene:
     placed = cage.pose_world_cage
     elsewhere = Cage(standing.points_m, standing.names, placed, standing.shapes, standing.holes, bodies)
     start = held.pose_world_object
-    part = Object(
-        held.boxes,
-        held.center_of_gravity_m,
-        shapes=held.shapes,
-        holes=held.holes,
-        pose=placed @ moved @ placed.inverse() @ start if misaligned.takes_object else start,
-        mass_kg=held.mass_kg,
-        inertia_kg_m2=held.inertia_kg_m2,
-    )
-    return Scene(
-        part,
-        elsewhere,
-        [_moved_load(load, misaligned, moved, (scene, part, elsewhere)) for load in scene.loads],
-        name=scene.name,
-        friction_coefficient=scene.friction_coefficient,
-        friction_of=scene.friction_of,
-        method=scene.method,
-        metric=scene.metric,
-        tolerances=scene.tolerances,
-        left_out=scene.left_out,
-    )
+    part = held.starting_at(placed @ moved @ placed.inverse() @ start) if misaligned.takes_object else held
+    loads = [_moved_load(load, misaligned, moved, (scene, part, elsewhere)) for load in scene.loads]
+    return scene.but_for(object=part, cage=elsewhere, loads=loads)
 
 
 def _moved_load(load: Load, misaligned: Misaligned, moved: Pose, places: tuple[Scene, Object, Cage]) -> Load:
     """Return a load for bodies and an object that stand elsewhere: a spring's preload is its tension at the start."""
     scene, part, cage = places
-    springs = []
-    for spring in load.springs:
-        longer_m = _length_m(spring, part, cage) - _length_m(spring, scene.object, scene.cage)
-        tension = spring.preload_n + spring.stiffness_n_per_m * longer_m
-        springs.append(Spring(spring.at_object_m, spring.to_m, spring.stiffness_n_per_m, tension, of=spring.of))
+    springs = [
+        spring.starting_longer(
+            cage.spring_length_m(spring, part.pose_world_object)
+            - scene.cage.spring_length_m(spring, scene.object.pose_world_object)
+        )
+        for spring in load.springs
+    ]
     return Load(
         load.name,
         gravity=load.gravity_world,
@@ -80,7 +61,3 @@ def _moved_load(load: Load, misaligned: Misaligned, moved: Pose, places: tuple[S
         stop_at=load.stop_at,
         press=load.press,
     )
-
-
-def _length_m(spring: Spring, held: Object, cage: Cage) -> float:
-    return float(np.linalg.norm(cage.spring_end_world(spring) - held.pose_world_object.transform(spring.at_object_m)))
