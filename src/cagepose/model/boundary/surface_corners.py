@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cagepose.model.boundary.curves import ARC, LINE, Curve
+from cagepose.model.boundary.curves import ARC, Curve
 from cagepose.model.boundary.surface_union import Tangents, cones_at
 from cagepose.model.boundary.trimmed import Vertices
 from cagepose.model.checks import FloatArray
@@ -84,50 +84,27 @@ def _ways(surface: ExactSurface) -> tuple[Ways, Ways, dict[int, float]]:
     for curve in surface.curves:
         if curve.kind == ARC and curve.is_closed:
             continue
-        last = len(curve.sides) - 1
-        for k, side in enumerate(curve.sides.tolist()):
-            if curve.kind in (ARC, LINE) and 0 < k < last:
+        first, last = surface.vertices_m[curve.nodes[[0, -1]]]
+        length = curve.radius_m if curve.kind == ARC else float(np.linalg.norm(last - first))
+        # A side is told with the way that leads out of its own start.
+        for node, side, sign in ((curve.nodes[0], curve.sides[0], 1.0), (curve.nodes[-1], curve.sides[-1], -1.0)):
+            if node >= n_corners:
                 continue
-            ends = (k == 0 or curve.kind not in (ARC, LINE), k == last or curve.kind not in (ARC, LINE))
-            start, end = int(curve.nodes[k]), int(curve.nodes[k + 1])
-            length = _length(surface, curve, k)
-            twin = int(surface.twins[side])
-            if ends[0] and start < n_corners:
-                way = _way(surface, curve, k, start)
-                found = way, _is_hollow(surface, curve, k, start, way)
-                leaving[side], arriving[twin], lengths[side] = found, found, length
-            if ends[1] and end < n_corners:
-                way = _way(surface, curve, k, end)
-                found = -way, _is_hollow(surface, curve, k, end, way)
-                leaving[twin], arriving[side], lengths[twin] = found, found, length
+            place = surface.vertices_m[node]
+            way = curve.tangent(place) if curve.kind == ARC else (last - first) / length
+            found = sign * way, _is_hollow(surface, curve, place if curve.kind == ARC else 0.5 * (first + last), way)
+            out, back = int(side), int(surface.twins[side])
+            if sign < 0.0:
+                out, back = back, out
+            leaving[out], arriving[back], lengths[out] = found, found, length
     return leaving, arriving, lengths
 
 
-def _way(surface: ExactSurface, curve: Curve, k: int, node: int) -> FloatArray:
-    """Return the unit vector along a curve at one of its nodes; of a chain, that along its edge number k."""
-    if curve.kind == ARC:
-        return curve.tangent(surface.vertices_m[node])
-    first, last = (0, -1) if curve.kind == LINE else (k, k + 1)
-    way = surface.vertices_m[curve.nodes[last]] - surface.vertices_m[curve.nodes[first]]
-    found: FloatArray = way / np.linalg.norm(way)
-    return found
-
-
-def _length(surface: ExactSurface, curve: Curve, k: int) -> float:
-    if curve.kind == ARC:
-        return curve.radius_m
-    first, last = (0, -1) if curve.kind == LINE else (k, k + 1)
-    return float(np.linalg.norm(surface.vertices_m[curve.nodes[last]] - surface.vertices_m[curve.nodes[first]]))
-
-
-def _is_hollow(surface: ExactSurface, curve: Curve, k: int, node: int, way: FloatArray) -> bool:
-    """Whether a curve is hollow at a node; of what is straight, in the middle: the tip of a cone has no normal."""
-    if curve.kind == ARC:
-        ends = np.array([node])
-    else:
-        ends = curve.nodes[[0, -1]] if curve.kind == LINE else curve.nodes[k : k + 2]
-    place = surface.vertices_m[ends].mean(axis=0, keepdims=True)
-    one, other = (surface.regions.surfaces[region].normals(place)[0] for region in (curve.left, curve.right))
+def _is_hollow(surface: ExactSurface, curve: Curve, place: FloatArray, way: FloatArray) -> bool:
+    """Whether a curve is hollow at a place of it; one that is straight is asked in its middle, as the tip of a cone has
+    no normal.
+    """
+    one, other = (surface.regions.surfaces[region].normals(place[None])[0] for region in (curve.left, curve.right))
     return bool(_cross(one, other) @ way < -HOLLOW)
 
 

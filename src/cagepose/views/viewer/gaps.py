@@ -32,7 +32,7 @@ def gap_data(shown: Playback, stage: Stage) -> list[dict[str, Any]]:
 def _moment(finder: GapFinder, shown: Playback, stage: Stage, shot: int) -> dict[str, Any]:
     pose, cage = shown.shots[shot].pose_world_object, shown.shots[shot].cage
     found = finder.at(pose, cage)
-    told = found.chosen(found.gaps_m.argsort(kind="stable")[:MOST_TOLD])
+    told = found.chosen(np.arange(len(found.parts))[:MOST_TOLD])
     ways = told.others_world - told.places_world
     normals = ways / np.where(told.gaps_m > 0.0, told.gaps_m, 1.0)[:, None]
     on_object = pose.inverse_transform(told.places_world) / stage.size_m
