@@ -61,6 +61,7 @@ PARTS = {
     "bored across": lambda: facets_on_surfaces(triangles_of(cross_bored(), within=True), "part"),
     "cut aslant": lambda: without(rod(), (-45.0, -45.0, 20.0), 0.5),
     "rounded": lambda: facets_on_surfaces(triangles_of(rounded(0.5)), "part"),
+    "well rounded": lambda: facets_on_surfaces(triangles_of(rounded(1.5)), "part"),
 }
 
 

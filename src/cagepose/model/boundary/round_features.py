@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,7 +43,12 @@ def circle_of(surface: ExactSurface, index: int, number: int) -> Row:
     angles = []
     for region in (curve.left, curve.right):
         normals = surface.regions.surfaces[region].normals(places)
-        angles.append(np.unwrap(np.arctan2(normals @ curve.axis, np.einsum("ij,ij->i", normals, outward))))
+        found = np.unwrap(np.arctan2(normals @ curve.axis, np.einsum("ij,ij->i", normals, outward)))
+        at_ends = [
+            found[0] + within_turn(math.atan2(float(normal @ curve.axis), float(normal @ outward[end])) - found[0])
+            for end, normal in _facets_at_ends(surface, curve, region)
+        ]
+        angles.append(np.append(found, at_ends))
     first, last = sorted(angles, key=lambda found: float(found[0]))
     if last[0] - first[0] > math.pi:
         first, last = last, first + 2.0 * math.pi
@@ -56,6 +61,28 @@ def circle_of(surface: ExactSurface, index: int, number: int) -> Row:
     numbers = (curve.radius_m, 0.0, 0.0, float(first.min()) - rise, float(last.max()) + rise, 0.0, width)
     least = curve.radius_m * min(1.0, width)
     return Row(CIRCLE, number, curve.center_m, curve.axis, outward[0], *numbers, [], least, box)
+
+
+def _facets_at_ends(surface: ExactSurface, curve: Curve, region: int) -> Iterator[tuple[int, FloatArray]]:
+    """Yield the normals of flat facets that meet an end of an arc on the side of one of its regions, a facet itself,
+    each after the place of its end in `ALONG`: a part rolls over the end onto those, too.
+    """
+    if surface.regions.is_exact[region]:
+        return
+    of_triangles, twins = surface.regions.of_triangles, surface.twins
+    first, last = curve.sides[[0, -1]] if region == curve.left else twins[curve.sides[[0, -1]]]
+    # Around the start of a side it goes on at the side before, two sides on; around its end at that after it.
+    to_start, to_end = (2, 1) if region == curve.left else (1, 2)
+    for end, side, step in ((0, int(first), to_start), (-1, int(last), to_end)):
+        seen, at = {region}, side
+        while True:
+            at = int(twins[at - at % 3 + (at + step) % 3])
+            other = int(of_triangles[at // 3])
+            if at == side or surface.regions.is_exact[other]:
+                break
+            if other not in seen:
+                seen.add(other)
+                yield end, np.array(surface.regions.surfaces[other].axis)
 
 
 def _rise(surface: ExactSurface, curve: Curve) -> float:
