@@ -34,7 +34,7 @@ def test_jaws_that_hold_a_block_say_so_and_the_next_phase_is_told_beside() -> No
     assert "2 close driven 62.54 % stands still left pad, right pad" in lines
     text = " ".join(lines)
     assert "drive of close 83.33 % of the way (left 25 mm, right 25 mm); blocked: no motion of the object" in text
-    assert "makes way for it, with any friction" in text
+    assert "makes way for the drive, with any friction" in text
     assert "drive of lift complete (left 1 mm, right 1 mm)" in lines
     assert "close: forces of the load alone; the drive can add forces of any size" in lines
     assert "verdict close: blocked, lift: rests (stable)" in lines
@@ -67,8 +67,8 @@ def stopping_at(force_n: float) -> Scene:
 @pytest.mark.parametrize(
     ("scene", "verdict", "why"),
     [
-        (stopping_at(1.0), "stops", "; stops: it has reached the force or moment of stop_at"),
-        (wedge(wall_friction=5.0), "jams", "; jams: it is stopped by friction alone"),
+        (stopping_at(1.0), "stops", "; stops: the drive has reached the force or moment of stop_at"),
+        (wedge(wall_friction=5.0), "jams", "; jams: friction alone stops the drive"),
         (
             Scene(jaws().object, jaws().cage, jaws().loads[:1], friction_coefficient=0.3),
             "blocked",

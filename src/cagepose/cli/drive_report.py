@@ -11,14 +11,9 @@ from cagepose.runs.actions import load_size
 from cagepose.runs.driven import BodyRun, DriveRun
 from cagepose.runs.drives import displaced_after, turns_alone
 from cagepose.runs.load_scaling import force_unit
-from cagepose.runs.run import FAILURES, STOPPED, PhaseRun, Run
+from cagepose.runs.run import FAILURES, PhaseRun, Run
+from cagepose.views.drive_words import STOPS
 
-WHY = {
-    "blocked": "blocked: no motion of the object makes way for it, with any friction",
-    "jams": "jams: it is stopped by friction alone",
-    "stops": "stops: it has reached the force or moment of stop_at",
-}
-"""Why a drive did not get to its end, in words."""
 LEAST_FORCE, LEAST_WORK = 1e-12, 1e-8
 """In loads, and in loads over the scene's size: less is written as zero. Bodies that push with none still find contacts
 anew within the touch tolerance, and that looks like work.
@@ -83,8 +78,8 @@ def _jam(drive: DriveRun, load: Load, words: LengthWords) -> str:
 
 
 def _why(phase: PhaseRun) -> str:
-    if phase.verdict in STOPPED:
-        return f"; {WHY[phase.verdict]}"
+    if phase.verdict in STOPS:
+        return f"; {phase.verdict}: {STOPS[phase.verdict]}"
     return f"; {phase.verdict}" if phase.verdict in FAILURES else ""
 
 
