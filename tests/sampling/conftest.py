@@ -10,7 +10,7 @@ from cagepose import Study, StudyResults
 from cagepose.files.key_path import parse_key_path
 from cagepose.files.scene_edit import with_values
 from cagepose.files.yaml_source import parse_yaml
-from cagepose.sampling import capture_map, report, sensitivity
+from cagepose.sampling import report, sensitivity
 from our_studies import PEG, RAIL, RunStudy
 
 
@@ -34,7 +34,6 @@ def small_designs(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs beside the rows are few, where a test asks for something else of the report."""
     monkeypatch.setattr(sensitivity, "BASE_ROWS", 16)
     monkeypatch.setattr(sensitivity, "BASE_ONE_BY_ONE", 16)
-    monkeypatch.setattr(capture_map, "CELLS_OF_SIDE", 8)
 
 
 @pytest.fixture

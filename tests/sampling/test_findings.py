@@ -83,7 +83,8 @@ def test_statistics_are_those_of_all_rows(run_study: RunStudy, peg: Path) -> Non
 @pytest.mark.usefixtures("small_designs")
 def test_where_a_part_goes_that_does_not_come_to_rest_is_no_tolerance(run_study: RunStudy, peg: Path) -> None:
     """Beyond its points the cube tips over; how far it is then is in its row alone."""
-    results = run_study({"object.pose.position[0]": {"uniform": [-0.1, 0.9]}, **RISES}, 200, scene=peg)
+    vary = {"object.pose.position[0]": {"uniform": [-0.1, 0.9]}, **RISES}
+    results = run_study(vary, 200, scene=peg, sensitivities=True)
     frame, numbers = results.to_frame(), results.report()
     rests, others = frame[frame["verdict"] == "rests"], frame[frame["verdict"] == "escapes"]
     assert len(rests) > 50 < len(others)
@@ -136,7 +137,7 @@ def test_a_linear_case_has_the_tolerances_and_indices_of_theory(run_study: RunSt
     )
     peg.write_text(text, encoding="utf-8")
     vary = {"parameters.a": {"normal": {"sigma": 0.1, "cut": 3}}, "parameters.b": {"normal": {"sigma": 0.2, "cut": 3}}}
-    numbers = run_study(vary, 20_000, scene=peg).report()
+    numbers = run_study(vary, 20_000, scene=peg, sensitivities=True).report()
     row = tolerance_of(numbers, "position_z")
     assert row["nominal"] == pytest.approx(0.5)
     assert list(row["derivatives"].values()) == pytest.approx([1.0, 1.0], abs=1e-9)
@@ -287,8 +288,8 @@ def test_a_report_of_one_number_and_one_quantity_has_room_for_its_pictures(
     run_study: RunStudy, peg: Path, tmp_path: Path
 ) -> None:
     """Or matplotlib warns, which is an error here."""
-    watch = {"top": {"point": [0, 0, 0.5]}}
-    run_study({"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}, 20, scene=peg, watch=watch).report()
+    asked = {"sensitivities": True, "watch": {"top": {"point": [0, 0, 0.5]}}}
+    run_study({"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}, 20, scene=peg, **asked).report()
     figures = {"sobol", "tornado", "spread"}
     for suffix, pictures in (("svg", figures), ("png", {*figures, "mechanism"})):
         assert {path.stem for path in tmp_path.glob(f"out/*.{suffix}")} == pictures
@@ -298,7 +299,7 @@ def test_a_report_of_one_number_and_one_quantity_has_room_for_its_pictures(
 def test_what_the_report_is_at_is_told(run_study: RunStudy, peg: Path) -> None:
     told = list[str]()
     with told_to(told.append):
-        findings_of(run_study(HEIGHTS, 20, scene=peg))
+        findings_of(run_study(HEIGHTS, 20, scene=peg, map={"over": list(HEIGHTS), "count": 8}))
     assert [line for line in told if "capture map" in line]
     assert told[-1] == ""
 
@@ -307,7 +308,8 @@ def test_what_the_report_is_at_is_told(run_study: RunStudy, peg: Path) -> None:
 def test_axes_have_the_units_of_the_scene_file(run_study: RunStudy, peg: Path) -> None:
     peg.write_text(PEG.replace("length: m", "length: in"), encoding="utf-8")
     vary = {"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}, "friction.coefficient": {"uniform": [0, 0.1]}}
-    figures = draw(findings_of(run_study(vary, 20, scene=peg, watch={"top": {"point": [0, 0, 0.5]}})))
+    asked = {"watch": {"top": {"point": [0, 0, 0.5]}}, "map": {"over": list(vary), "count": 8}}
+    figures = draw(findings_of(run_study(vary, 20, scene=peg, **asked)))
     (of_map,) = figures["map"].axes
     assert {of_map.get_xlabel(), of_map.get_ylabel()} == {"cage.pose.position[2] [in]", "friction.coefficient"}
     assert figures["spread"].axes[0].get_xlabel() == "[in]"
@@ -320,7 +322,7 @@ def test_long_names_stay_within_their_pictures(run_study: RunStudy, peg: Path) -
     peg.write_text(PEG.replace("0.02, 3]", "0.02, 3], euler_zyx_deg: [0, 0, 0]"), encoding="utf-8")
     watch = {"top_of_the_block_at_its_far_and_front_end": {"point": [0.3, 0, 0.5]}}
     vary = {**HEIGHTS, "object.pose.euler_zyx_deg[0]": {"uniform": [-3, 3]}}
-    figures = draw(findings_of(run_study(vary, 20, scene=peg, watch=watch)))
+    figures = draw(findings_of(run_study(vary, 20, scene=peg, watch=watch, sensitivities=True)))
     for name in ("sobol", "tornado"):
         FigureCanvasAgg(figures[name]).draw()
         edges = figures[name].bbox
@@ -395,17 +397,39 @@ def test_where_no_row_rests_there_is_a_report_all_the_same(
 def test_a_run_may_be_judged_by_its_forces(run_study: RunStudy, name: str) -> None:
     """In the rows, and in the runs beside them."""
     vary = {"cage.pose.euler_zyx_deg[1]": {"uniform": [-0.1, 0.1]}, "cage.points[0][2]": {"uniform": [-1.1, -0.9]}}
-    results = run_study(vary, 100, forces=True, accept=f"{name} > 0.05")
+    asked = {"over": list(vary), "count": 8}
+    results = run_study(vary, 100, forces=True, map=asked, accept=f"{name} > 0.05")
     frame, numbers = results.to_frame(), results.report()
     assert frame["accepted"].tolist() == (frame["force_C1"] > 0.05).tolist()
     assert 0.0 < numbers["yield"]["share"] < 1.0
     assert 0 < sum(map(sum, numbers["maps"][0]["accepted_cells"])) < 64
 
 
+@pytest.mark.usefixtures("no_pictures")
+def test_a_report_without_a_map_and_indices_makes_no_runs_for_them(
+    run_study: RunStudy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    n_rows, run_rows = list[int](), Runner.run
+
+    def counted(self: Runner, rows: Any, **more: Any) -> Any:
+        n_rows.append(len(rows))
+        return run_rows(self, rows, **more)
+
+    monkeypatch.setattr(Runner, "run", counted)
+    vary = {"cage.pose.euler_zyx_deg[1]": {"uniform": [-0.4, 0.4]}, "friction.coefficient": {"grid": [0.0, 0.1]}}
+    numbers = run_study(vary, 20).report()
+    assert numbers["maps"] == numbers["sensitivities"] == []
+    assert sum(n_rows) < 100
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "Sobol" not in page
+    assert "Capture map" not in page
+
+
 @pytest.mark.usefixtures("small_designs")
 def test_the_page_stands_alone_and_holds_the_numbers(run_study: RunStudy, tmp_path: Path) -> None:
     vary = {"cage.pose.euler_zyx_deg[1]": {"uniform": [-0.4, 0.4]}, "friction.coefficient": {"grid": [0.0, 0.1]}}
-    results = run_study(vary, 200, accept="pitch_deg < 0.1 and 'x' != '<b>'", watch={"tip": {"point": [600, 0, 0]}})
+    asked = {"sensitivities": True, "map": {"over": list(vary), "count": 8}, "watch": {"tip": {"point": [600, 0, 0]}}}
+    results = run_study(vary, 200, accept="pitch_deg < 0.1 and 'x' != '<b>'", **asked)
     numbers = results.report()
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert not re.findall(r'(?:src|href)="(?!#|data:|worst|typical)', page)

@@ -28,6 +28,8 @@ vary:
   cage.pose.euler_zyx_deg[1]: {{uniform: [-0.4, 0.4]}}
   cage.pose.euler_zyx_deg[0]: {{uniform: [-0.4, 0.4]}}
 sample: {{runs: 300}}
+sensitivities: true
+map: {{over: ["cage.pose.euler_zyx_deg[1]", "cage.pose.euler_zyx_deg[0]"], count: 8}}
 """
 
 pytestmark = pytest.mark.usefixtures("small_designs")

@@ -171,7 +171,12 @@ class StudyModel(RunsModel):
     forces: bool | None = Field(
         None, description="Whether each row holds the contact forces, which takes one run at a time; left out: no."
     )
-    map: MapModel | None = Field(None, description="The capture map; left out: over the first two of vary.")
+    sensitivities: bool | None = Field(
+        None,
+        description="Whether the report says which number matters, by Sobol indices from some thousand runs of its own;"
+        " left out: no.",
+    )
+    map: MapModel | None = Field(None, description="The capture map, from runs of its own; left out: none.")
 
 
 def _apart(ends: list[float]) -> list[float]:

@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cagepose.files.schema_study import MapModel
 from cagepose.model.checks import FloatArray
 from cagepose.sampling.distribution import Distribution
 from cagepose.sampling.outcome import Outcomes
 from cagepose.sampling.row_columns import RowColumns
 from cagepose.sampling.runner import Runner
 
-CELLS_OF_SIDE = 60
-"""Cells along each side, where the study does not say."""
 LINES_OF_SIDE = 60
 """At least so many lines of cells are run along each side, or all of them."""
 LAYERS, MOST_LAYERS = 4, 9
@@ -64,19 +63,14 @@ class CaptureMap:
     quantities: Mapping[str, FloatArray]
 
 
-def capture_maps(runner: Runner, columns: RowColumns, distributions: Sequence[Distribution]) -> tuple[CaptureMap, ...]:
-    """Return the map over the two numbers that the study names, or the first two that have more than one value; one for
-    each of a few values of the third number, if it names three; none if there are no two.
-    """
-    study = runner.study
-    keys = [one.key for one in study.varied]
-    given = study.model.map
-    moving = [index for index, one in enumerate(distributions) if one.low < one.high]
-    chosen = [keys.index(key) for key in given.over] if given else moving[:2]
-    if len(chosen) < 2:
-        return ()
-    nominal, count = np.array([one.nominal for one in study.varied]), given.count if given else CELLS_OF_SIDE
-    axes = [np.linspace(distributions[one].low, distributions[one].high, count) for one in chosen[:2]]
+def capture_maps(
+    runner: Runner, columns: RowColumns, distributions: Sequence[Distribution], asked: MapModel
+) -> tuple[CaptureMap, ...]:
+    """Return the map over the two numbers that are asked for; of three, one for each of a few values of the third."""
+    keys = [one.key for one in runner.study.varied]
+    chosen = [keys.index(key) for key in asked.over]
+    nominal = np.array([one.nominal for one in runner.study.varied])
+    axes = [np.linspace(distributions[one].low, distributions[one].high, asked.count) for one in chosen[:2]]
     if len(chosen) == 2:
         return (_map(runner, columns, chosen, axes, nominal),)
     return tuple(

@@ -35,7 +35,7 @@ class Findings:
     statistics, tolerances, contacts, chosen
         What the rows say, and runs of their own beside them.
     sensitivities, maps
-        From designs of their own.
+        From designs of their own; none that the study does not ask for.
     """
 
     results: StudyResults
@@ -65,10 +65,13 @@ def findings_of(results: StudyResults, workers: int | None = None) -> Findings:
         tell("cagepose: the report: what the rows say, and tolerances")
         statistics = statistics_of(results)
         tolerances = tuple(tolerance_rows(runner, columns, distributions, statistics.spreads))
-        tell("cagepose: the report: which number matters, by runs of its own")
-        indices = tuple(sensitivities(runner, columns, distributions, study.model.sample.seed))
-        tell("cagepose: the report: the capture map, by runs of its own")
-        maps = capture_maps(runner, columns, distributions)
+        indices, maps = tuple[Sensitivity, ...](), tuple[CaptureMap, ...]()
+        if study.model.sensitivities:
+            tell("cagepose: the report: which number matters, by runs of its own")
+            indices = tuple(sensitivities(runner, columns, distributions, study.model.sample.seed))
+        if study.model.map:
+            tell("cagepose: the report: the capture map, by runs of its own")
+            maps = capture_maps(runner, columns, distributions, study.model.map)
         tell("cagepose: the report: contacts, typical and worst runs")
         return Findings(
             results,

@@ -9,7 +9,7 @@ from playwright.sync_api import Frame, Page
 
 from cagepose import Study, save_scene
 from cagepose.cli.app import main
-from cagepose.sampling import capture_map, report, sensitivity
+from cagepose.sampling import report
 from driven.pins_into_plates import pins_into_a_plate
 from driving import wait_until
 from our_studies import RAIL
@@ -29,8 +29,6 @@ def begins_with_a_picture(tab: Page) -> bool:
 
 
 def test_the_report_of_a_study_plays_its_worst_runs(watched, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sensitivity, "BASE_ROWS", 8)
-    monkeypatch.setattr(capture_map, "CELLS_OF_SIDE", 4)
     monkeypatch.setattr(report, "figure_bytes", lambda *_: b"<svg></svg>")
     vary = {"cage.pose.euler_zyx_deg[1]": {"uniform": [-0.2, 0.2]}}
     results = Study(RAIL, vary, {"runs": 16, "seed": 1}).run(tmp_path)
