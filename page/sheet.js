@@ -1,0 +1,272 @@
+// The scene's text beside the picture: it is run when somebody has stopped typing, saved when somebody says so, and taken
+// anew when another program has written the file. It is in a live page alone.
+
+import { post } from "./asking.js";
+import { download } from "./panel.js";
+import { $, element } from "./words.js";
+import { Writing } from "./writing.js";
+
+const TYPED_MS = 600; // after the last key
+const LOOK_MS = 1000; // between two looks at the file
+const PER_CENT = 20; // a slider of a number reaches so far from it
+const NOTHING = { deg: 5, other: 1 }; // and so far from 0
+const GONE = "The viewer's server does not answer; start cagepose view again.";
+
+const keyPath = (path) => path.reduce((text, key) => (typeof key === "number" ? `${text}[${key}]` : text ? `${text}.${key}` : key), "");
+const button = (text, title, act) => {
+  const made = element("button", text);
+  made.title = title;
+  made.addEventListener("click", act);
+  return made;
+};
+
+class Sheet {
+  // `changedSize()` is called when the picture has more room, or less.
+  constructor({ name, schema, version }, panel, changedSize) {
+    Object.assign(this, { name, panel, changedSize, chosen: [], version, onDisk: version && panel.text, begun: panel.text });
+    this.build();
+    this.writing = new Writing(this.room, panel.text, schema, { typed: (isNow) => this.typed(isNow), moved: () => this.tellNumber(), altClicked: () => this.addSlider() });
+    panel.editor = this;
+    this.tellState();
+    this.tellNumber();
+    this.look();
+    window.addEventListener("beforeunload", (event) => { if (this.isTyped && this.isUnsaved) event.preventDefault(); });
+  }
+
+  build() {
+    this.section = element("section", "");
+    Object.assign(this.section, { id: "text", hidden: true });
+    this.section.setAttribute("aria-label", "The scene's text");
+    const head = element("div", "", "head");
+    this.state = element("small", "");
+    this.state.setAttribute("role", "status");
+    this.saveButton = button("save", "write this text into the file", () => this.save());
+    head.append(element("strong", this.name), this.state, this.saveButton,
+      button("save as \u2026", "a new file beside this one, or a download", () => this.askName()),
+      button("\u2715", "close the text", () => this.toggle(false)));
+    this.news = element("div", "", "news");
+    this.news.setAttribute("role", "alert");
+    this.news.hidden = true;
+    this.room = element("div", "", "writing");
+    this.mistakes = element("div", "", "mistakes");
+    this.foot = element("div", "", "foot");
+    this.section.append(head, this.news, this.room, this.mistakes, this.foot);
+    $("view").before(this.section);
+    this.opener = button("edit text", "the scene's text, beside the picture", () => this.toggle(this.section.hidden));
+    this.opener.id = "edittext";
+    $("views").prepend(this.opener);
+  }
+
+  toggle(isOpen) {
+    this.section.hidden = !isOpen;
+    this.opener.setAttribute("aria-pressed", String(isOpen));
+    document.body.classList.toggle("editing", isOpen);
+    this.changedSize();
+    if (isOpen) this.writing.view.focus();
+  }
+
+  get text() {
+    return this.writing.text;
+  }
+
+  get isUnsaved() {
+    return this.onDisk !== null && this.text !== this.onDisk;
+  }
+
+  // The text was edited by hand: it is run when nothing is typed any more, or now.
+  typed(isNow) {
+    clearTimeout(this.timer);
+    this.isTyped = true;
+    this.panel.edit(this.text);
+    this.tellState();
+    this.timer = setTimeout(() => this.run(), isNow ? 0 : TYPED_MS);
+  }
+
+  run() {
+    clearTimeout(this.timer);
+    this.panel.ask();
+  }
+
+  // Takes a text that nobody typed, and runs it.
+  replace(text) {
+    this.writing.isolate();
+    this.writing.take(text);
+    this.panel.edit(text);
+    this.tellState();
+    this.run();
+  }
+
+  // A run of this text, or of what sliders have made of it.
+  answered(text) {
+    this.writing.take(text);
+    this.tellMistakes([]);
+    this.tellState();
+    this.tellNumber();
+  }
+
+  // Returns what to tell over the picture; undefined: all that is wrong, as it is not told here.
+  refused({ problems, mistakes = [] }, asked) {
+    if (asked.text !== null && asked.text !== this.text) return undefined;
+    this.tellMistakes(mistakes);
+    if (this.section.hidden || mistakes.length < problems.length) return undefined;
+    return [`The text has ${mistakes.length === 1 ? "a mistake" : `${mistakes.length} mistakes`}, told below it.`];
+  }
+
+  undoAll() {
+    this.replace(this.begun);
+  }
+
+  tellMistakes(mistakes) {
+    this.writing.mark(mistakes);
+    this.mistakes.replaceChildren(...mistakes.map(({ line, words }) => {
+      const made = button(`line ${line}`, "go there", () => this.writing.go(line));
+      const row = element("p", "");
+      row.append(made, ` ${words}`);
+      return row;
+    }));
+    this.writing.reveal();
+  }
+
+  tellState() {
+    this.state.textContent = this.onDisk === null ? "" : this.isUnsaved ? "edited, not saved" : "as in the file";
+    this.saveButton.disabled = !this.isUnsaved;
+  }
+
+  // Tells something about the file, with what can be done about it.
+  tell(words, ...buttons) {
+    this.news.replaceChildren(...(words ? [element("span", words), ...buttons] : []));
+    this.news.hidden = !words;
+  }
+
+  // Looks whether another program has written the file, again and again.
+  async look() {
+    try {
+      if (!document.hidden) await this.compare();
+    } catch (error) {
+      if (!(error instanceof TypeError)) throw error; // a lost connection is told where something is asked for
+    }
+    setTimeout(() => this.look(), LOOK_MS);
+  }
+
+  async compare() {
+    if (this.isSaving) return;
+    const known = this.version;
+    const found = await (await post("file", { version: known })).json();
+    if (this.version !== known || this.isSaving) return; // saved meanwhile
+    if (found.problem) {
+      if (!this.isGone) this.tell(`${found.problem}. This text is here still: save it as another file.`);
+      this.isGone = true;
+      return;
+    }
+    if (this.isGone) this.tell("");
+    this.isGone = false;
+    if (found.text === undefined) return;
+    const isEdited = known === null || this.isUnsaved; // known from the start, but for values that the command has set
+    Object.assign(this, { version: found.version, onDisk: found.text });
+    if (!isEdited) this.takeFile();
+    else if (known !== null && found.text !== this.text) this.askWhich();
+    this.tellState();
+  }
+
+  takeFile() {
+    this.tell("");
+    this.begun = this.onDisk;
+    this.replace(this.onDisk);
+  }
+
+  askWhich() {
+    this.toggle(true);
+    this.tell(`${this.name} was changed on disk, and you have edits here that are not saved.`,
+      button("take the file's text", "yours can be had back by undo", () => this.takeFile()),
+      button("keep mine", "the file stays as it is until you save", () => this.tell("")));
+  }
+
+  async save() {
+    this.isSaving = true;
+    const text = this.text;
+    try {
+      const response = await post("save", { text, version: this.version });
+      const answer = await response.json();
+      if (response.ok) {
+        Object.assign(this, { version: answer.version, onDisk: text, begun: text });
+        this.tell("");
+      } else this.tell(answer.problems.join(" "));
+    } catch {
+      this.tell(GONE);
+    } finally {
+      this.isSaving = false;
+    }
+    this.tellState();
+  }
+
+  askName() {
+    const name = Object.assign(document.createElement("input"), { value: this.panel.fileName, size: 24 });
+    name.setAttribute("aria-label", "name of the new file");
+    const save = () => this.saveAs(name.value);
+    name.addEventListener("keydown", (event) => { if (event.key === "Enter") save(); });
+    this.tell("Beside the file, as", name, button("save", "a new file in the same folder", save),
+      button("download", "from the browser", () => { download(this.text, name.value); this.tell(""); }),
+      button("\u2715", "no file", () => this.tell("")));
+    name.focus();
+  }
+
+  async saveAs(name) {
+    try {
+      const response = await post("save-as", { text: this.text, name });
+      const answer = await response.json();
+      this.tell(response.ok ? `Saved as ${answer.name}; this page goes on with ${this.name}.` : answer.problems.join(" "),
+        ...(response.ok ? [] : [button("another name", "", () => this.askName())]), button("\u2715", "close", () => this.tell("")));
+    } catch {
+      this.tell(GONE);
+    }
+  }
+
+  // What can be done with the number under the cursor.
+  tellNumber() {
+    const number = this.writing?.numberHere();
+    if (!number) {
+      this.foot.replaceChildren(element("small", "Ctrl+Enter runs the text. With the cursor on a number, it can have a slider."));
+      return;
+    }
+    const key = keyPath(number.path);
+    this.foot.replaceChildren(element("code", `${key} = ${number.value}`),
+      button("slider", "a slider for this number (Alt+click)", () => this.addSlider()));
+  }
+
+  addSlider() {
+    const number = this.writing.numberHere();
+    const key = number && keyPath(number.path);
+    if (!number || this.panel.goTo(key)) return;
+    this.chosen.push(this.control(key, number.path, number.value));
+    this.panel.edit(this.panel.base ?? this.text);
+    this.panel.addMine([...this.chosen]);
+    this.panel.goTo(key);
+  }
+
+  control(key, path, value) {
+    const reach = PER_CENT / 100 * Math.abs(value) || (/_deg/.test(key) ? NOTHING.deg : NOTHING.other);
+    const step = 10 ** Math.floor(Math.log10(reach / 200));
+    const round = (end) => Number((Math.round(end / step) * step).toPrecision(12));
+    const control = { group: "of the text", label: key, unit: "", key, index: null, value, low: round(value - reach), high: round(value + reach), step, choices: [], path };
+    return { ...control, remove: () => {
+      this.chosen = this.chosen.filter((one) => one.key !== key);
+      this.panel.addMine([...this.chosen]);
+    } };
+  }
+
+  // The sliders of numbers, as far as these are there still.
+  controls() {
+    this.chosen = this.chosen.flatMap((control) => {
+      const number = this.writing.numberOf(control.path);
+      if (!number) return [];
+      const isOutside = number.value < control.low || number.value > control.high;
+      return [isOutside ? this.control(control.key, control.path, number.value) : { ...control, value: number.value }];
+    });
+    return [...this.chosen];
+  }
+}
+
+window.cageposeEditor = (edit, panel, changedSize) => {
+  const sheet = new Sheet(edit, panel, changedSize);
+  Object.assign(window.cagepose, { text: () => sheet.text, putCursor: (at) => sheet.writing.put(at) }); // for other scripts and for tests
+};
