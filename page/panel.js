@@ -43,7 +43,7 @@ export class Panel {
   remover(control) {
     const button = element("button", "\u2715");
     button.setAttribute("aria-label", `remove the slider of ${control.label}`);
-    button.addEventListener("click", (event) => { event.preventDefault(); this.edit(this.text); control.remove(); });
+    button.addEventListener("click", (event) => { event.preventDefault(); control.remove(); });
     return button;
   }
 

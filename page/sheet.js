@@ -3,6 +3,7 @@
 
 import { post } from "./asking.js";
 import { download } from "./panel.js";
+import { Varied } from "./varied.js";
 import { $, element } from "./words.js";
 import { Writing } from "./writing.js";
 
@@ -26,6 +27,7 @@ class Sheet {
     Object.assign(this, { name, panel, changedSize, chosen: [], version, onDisk: version && panel.text, begun: panel.text });
     this.build();
     this.writing = new Writing(this.room, panel.text, schema, { typed: (isNow) => this.typed(isNow), moved: () => this.tellNumber(), altClicked: () => this.addSlider() });
+    this.varied = new Varied(this.beside, { text: () => this.text, seen: (path, value) => this.write(path, value) });
     panel.editor = this;
     this.tellState();
     this.tellNumber();
@@ -49,8 +51,9 @@ class Sheet {
     this.news.hidden = true;
     this.room = element("div", "", "writing");
     this.mistakes = element("div", "", "mistakes");
+    this.beside = element("div", "", "varied");
     this.foot = element("div", "", "foot");
-    this.section.append(head, this.news, this.room, this.mistakes, this.foot);
+    this.section.append(head, this.news, this.room, this.mistakes, this.beside, this.foot);
     $("view").before(this.section);
     this.opener = button("edit text", "the scene's text, beside the picture", () => this.toggle(this.section.hidden));
     this.opener.id = "edittext";
@@ -225,12 +228,19 @@ class Sheet {
   tellNumber() {
     const number = this.writing?.numberHere();
     if (!number) {
-      this.foot.replaceChildren(element("small", "Ctrl+Enter runs the text. With the cursor on a number, it can have a slider."));
+      this.foot.replaceChildren(element("small", "Ctrl+Enter runs the text. With the cursor on a number, it can have a slider, or vary."));
       return;
     }
     const key = keyPath(number.path);
     this.foot.replaceChildren(element("code", `${key} = ${number.value}`),
-      button("slider", "a slider for this number (Alt+click)", () => this.addSlider()));
+      button("slider", "a slider for this number (Alt+click)", () => this.addSlider()),
+      button("vary this", "many runs with values around this one", () => this.varied.ask(key, number)));
+  }
+
+  // Writes a number in the place of another one, as if somebody had typed it.
+  write(path, value) {
+    const number = this.writing.numberOf(path);
+    if (number) this.replace(`${this.text.slice(0, number.from)}${value}${this.text.slice(number.to)}`);
   }
 
   addSlider() {
@@ -238,9 +248,13 @@ class Sheet {
     const key = number && keyPath(number.path);
     if (!number || this.panel.goTo(key)) return;
     this.chosen.push(this.control(key, number.path, number.value));
-    this.panel.edit(this.panel.base ?? this.text);
-    this.panel.addMine([...this.chosen]);
+    this.showSliders();
     this.panel.goTo(key);
+  }
+
+  showSliders() {
+    this.panel.edit(this.text);
+    this.panel.addMine([...this.chosen]);
   }
 
   control(key, path, value) {
@@ -250,7 +264,7 @@ class Sheet {
     const control = { group: "of the text", label: key, unit: "", key, index: null, value, low: round(value - reach), high: round(value + reach), step, choices: [], path };
     return { ...control, remove: () => {
       this.chosen = this.chosen.filter((one) => one.key !== key);
-      this.panel.addMine([...this.chosen]);
+      this.showSliders();
     } };
   }
 

@@ -130,6 +130,8 @@ def test_line_ends_of_the_file_stay_as_they_are(tmp_path: Path) -> None:
         found = ask(server, "/file", {"version": None})[1]
         assert found["text"] == TEXT
         assert ask(server, "/save", {"text": TEXT + "# a\n", "version": found["version"]})[0] == 200
+        assert "\r" not in ask(server, "/run", {"values": {"friction": 0.2}})[1]["text"]
+        assert b"\\r" not in server.page.partition(b'id="data">')[2].partition(b"</script>")[0]
     assert path.read_bytes() == (TEXT + "# a\n").replace("\n", "\r\n").encode()
 
 
@@ -165,6 +167,40 @@ def test_nobody_writes_by_another_name_or_without_json(server: ViewServer, scene
         assert ask(server, path, question, **{"Content-Type": "text/plain"})[0] == 422
     assert [path.name for path in scene.parent.iterdir()] == ["rollers.yaml"]
     assert scene.read_text(encoding="utf-8") == TEXT
+
+
+def test_runs_with_other_numbers_end_as_the_scene_with_these(server: ViewServer) -> None:
+    """The upper front roller: lower, it presses on the bar, where no run can begin."""
+    key, numbers = "cage.shapes[2].position[2]", [13.5, 13.0, 13.3, 13.9]
+    status, answer = ask(server, "/vary", {"text": TEXT, "key": key, "numbers": numbers})
+    assert status == 200
+    assert (answer["unit"], answer["lengthUnit"]) == ("mm", "mm")
+    assert "inside" in answer["runs"][1]["problem"]
+    for number, told in zip(numbers, answer["runs"], strict=True):
+        if number == 13.0:
+            continue
+        expected = run(parse_scene(TEXT, set_values=[f"{key}={number}"]))
+        center = expected.pose.transform(expected.scene.object.center_of_gravity_m)
+        assert told["verdicts"] == [phase.verdict for phase in expected.phases]
+        assert told["verdict"] == expected.verdict
+        assert told["center"] == pytest.approx((center * 1e3).tolist(), abs=1e-9)
+        assert set(told["touching"]) == {contact.point for contact in expected.phases[-1].contacts}
+
+
+@pytest.mark.parametrize(
+    ("key", "numbers"),
+    [
+        ("name", [1.0]),
+        ("cage.shapes[99].position[0]", [1.0]),
+        ("friction.coefficient", [1.0] * 65),
+        ("friction.coefficient", ["wide"]),
+        ("friction.coefficient", [True]),
+        ("friction.coefficient", None),
+        ("[", [1.0]),
+    ],
+)
+def test_what_cannot_be_varied_is_refused(server: ViewServer, key: str, numbers: object) -> None:
+    assert ask(server, "/vary", {"text": TEXT, "key": key, "numbers": numbers})[0] == 422
 
 
 def test_where_the_network_may_look_no_text_is_taken_and_no_file_written(scene: Path) -> None:

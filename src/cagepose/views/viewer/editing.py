@@ -16,6 +16,7 @@ from cagepose.files.scene_edit import edited
 from cagepose.files.scene_file import read_scene_text, scene_text_of
 from cagepose.files.schema import scene_json_schema
 from cagepose.files.write import write_whole
+from cagepose.views.viewer.vary import runs_with
 from cagepose.views.viewer.what_if import WhatIf
 
 TEXTS_KEPT = 4
@@ -57,7 +58,7 @@ class Desk:
         self._writing = Lock()
         self.answers: dict[str, Callable[[Question], dict[str, Any]]] = {"/run": self._run, "/pull": self._pull}
         if can_edit:
-            self.answers |= {"/file": self._file, "/save": self._save, "/save-as": self._save_as}
+            self.answers |= {"/file": self._file, "/save": self._save, "/save-as": self._save_as, "/vary": self._vary}
 
     def page_content(self) -> dict[str, Any]:
         """Return what a page needs to ask."""
@@ -65,7 +66,7 @@ class Desk:
         content = {
             "controls": [control.document() for control in start.controls],
             "fileName": f"{self._path.stem}-changed.yaml",
-            "text": start.scene_text.text.replace("\r\n", "\n"),
+            "text": _with_plain_ends(start.scene_text.text),
         }
         if not self._can_edit:
             return content
@@ -88,10 +89,14 @@ class Desk:
     def _run(self, asked: Question) -> dict[str, Any]:
         what_if = self._what_if(asked)
         found = what_if.answer(asked.get("values", {}))
+        found["text"] = _with_plain_ends(found["text"])
         return {**found, "controls": [control.document() for control in what_if.controls]}
 
     def _pull(self, asked: Question) -> dict[str, Any]:
         return self._what_if(asked).pulled(asked.get("values", {}), asked.get("pull"))
+
+    def _vary(self, asked: Question) -> dict[str, Any]:
+        return runs_with(self._what_if(asked).scene_text, asked.get("key"), asked.get("numbers"))
 
     def _what_if(self, asked: Question) -> WhatIf:
         if asked.get("text") is None:
@@ -109,7 +114,7 @@ class Desk:
             content = self._content()
             if _version(content) == asked.get("version"):
                 return {"version": asked["version"]}
-            return {"version": _version(content), "text": decoded(content, self._source).replace("\r\n", "\n")}
+            return {"version": _version(content), "text": _with_plain_ends(decoded(content, self._source))}
         except FileNotFoundError:
             return {"version": None, "problem": f"{self._path.name} is not there any more"}
         except (OSError, CageposeError) as error:
@@ -156,6 +161,11 @@ def _text(asked: Question) -> str:
     if not isinstance(text, str):
         raise ValueError("the text of the scene is missing")
     return text
+
+
+def _with_plain_ends(text: str) -> str:
+    """Return a text with line ends as an editor in a browser has them."""
+    return text.replace("\r\n", "\n")
 
 
 def _as_bytes(text: str, *, has_returns: bool = False) -> bytes:
