@@ -144,7 +144,7 @@ export class Panel {
 
   take(answer, asked) {
     this.text = answer.text;
-    this.editor?.answered(answer.text);
+    this.editor?.answered(answer);
     if (asked.text === null || Object.keys(asked.values).length || Object.keys(this.changed()).length) return;
     const mine = this.editor?.controls() ?? [];
     const controls = [...mine, ...answer.controls];

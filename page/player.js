@@ -393,7 +393,7 @@ if (drawing) $("names").checked = drawing.allNames;
 if (!data.points.length) $("points").parentElement.hidden = true;
 if (data.controls) panel = new Panel(data.controls, data.fileName, data.text, asker, replaceRun);
 if (panel && drawing) hand = new Hand(asker, data.grips, { scene: () => panel.question(), show: showLed, restart: () => panel.ask(), refuse: (why) => asker.complain([why], "answer") });
-if (data.edit) window.cageposeEditor(data.edit, panel, () => { refresh(); drawing?.fit(); });
+if (data.edit) window.cageposeEditor({ ...data.edit, beside: data.beside }, panel, () => { refresh(); drawing?.fit(); });
 $("pull").parentElement.hidden = !hand;
 if (hand) $("scene").addEventListener("pointermove", hover);
 show();

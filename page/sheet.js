@@ -23,11 +23,11 @@ const button = (text, title, act) => {
 
 class Sheet {
   // `changedSize()` is called when the picture has more room, or less.
-  constructor({ name, schema, version }, panel, changedSize) {
-    Object.assign(this, { name, panel, changedSize, chosen: [], version, onDisk: version && panel.text, begun: panel.text });
+  constructor({ name, schema, version, beside }, panel, changedSize) {
+    Object.assign(this, { name, beside, panel, changedSize, chosen: [], version, onDisk: version && panel.text, begun: panel.text });
     this.build();
     this.writing = new Writing(this.room, panel.text, schema, { typed: (isNow) => this.typed(isNow), moved: () => this.tellNumber(), altClicked: () => this.addSlider() });
-    this.varied = new Varied(this.beside, { text: () => this.text, seen: (path, value) => this.write(path, value) });
+    this.varied = new Varied(this.study, { text: () => this.text, seen: (path, value) => this.write(path, value) });
     panel.editor = this;
     this.tellState();
     this.tellNumber();
@@ -51,9 +51,9 @@ class Sheet {
     this.news.hidden = true;
     this.room = element("div", "", "writing");
     this.mistakes = element("div", "", "mistakes");
-    this.beside = element("div", "", "varied");
+    this.study = element("div", "", "varied");
     this.foot = element("div", "", "foot");
-    this.section.append(head, this.news, this.room, this.mistakes, this.beside, this.foot);
+    this.section.append(head, this.news, this.room, this.mistakes, this.study, this.foot);
     $("view").before(this.section);
     this.opener = button("edit text", "the scene's text, beside the picture", () => this.toggle(this.section.hidden));
     this.opener.id = "edittext";
@@ -100,7 +100,8 @@ class Sheet {
   }
 
   // A run of this text, or of what sliders have made of it.
-  answered(text) {
+  answered({ text, beside }) {
+    this.beside = beside;
     this.writing.take(text);
     this.tellMistakes([]);
     this.tellState();
@@ -111,7 +112,8 @@ class Sheet {
   refused({ problems, mistakes = [] }, asked) {
     if (asked.text !== null && asked.text !== this.text) return undefined;
     this.tellMistakes(mistakes);
-    if (this.section.hidden || mistakes.length < problems.length) return undefined;
+    if (mistakes.length < problems.length) return undefined;
+    if (this.section.hidden) return mistakes.map(({ line, words }) => `line ${line}: ${words}`);
     return [`The text has ${mistakes.length === 1 ? "a mistake" : `${mistakes.length} mistakes`}, told below it.`];
   }
 
@@ -153,9 +155,13 @@ class Sheet {
 
   async compare() {
     if (this.isSaving) return;
-    const known = this.version;
-    const found = await (await post("file", { version: known })).json();
+    const { version: known, beside } = this;
+    const found = await (await post("file", { version: known, beside: beside.names })).json();
     if (this.version !== known || this.isSaving) return; // saved meanwhile
+    if (this.beside === beside && found.stamp !== beside.stamp) { // of points or of a mesh
+      this.beside = { ...beside, stamp: found.stamp };
+      this.panel.ask();
+    }
     if (found.problem) {
       if (!this.isGone) this.tell(`${found.problem}. This text is here still: save it as another file.`);
       this.isGone = true;

@@ -1,7 +1,7 @@
 // Places in a YAML text: which key a position is in, and where what a key holds stands. They are read from CodeMirror's
 // tree, which is there while a line is half written.
 
-import { parser } from "@lezer/yaml";
+import { yamlLanguage } from "@codemirror/lang-yaml";
 
 const NUMBER = /^[-+]?(\.\d+|\d+(\.\d*)?)([eE][-+]?\d+)?$/;
 const DUMMY = "x__";
@@ -71,7 +71,7 @@ export function begun(text, position) {
   if (!isFlowEnd && !/^\s*:/.test(after)) return null;
   const parsed = (dummy) => {
     const whole = before + dummy + after;
-    return { whole, node: parser.parse(whole).resolveInner(before.length + 1, 1) };
+    return { whole, node: yamlLanguage.parser.parse(whole).resolveInner(before.length + 1, 1) };
   };
   const isValue = /:\s+$/.test(line.slice(0, line.length - word.length));
   if (!isValue) {

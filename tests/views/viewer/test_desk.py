@@ -97,11 +97,29 @@ def test_a_number_of_the_start_and_a_moved_cage_hold_both(server: ViewServer) ->
 def test_the_file_is_sent_again_only_when_it_was_changed(server: ViewServer, scene: Path) -> None:
     first = ask(server, "/file", {"version": None})[1]
     assert first["text"] == TEXT
-    assert ask(server, "/file", {"version": first["version"]})[1] == {"version": first["version"]}
+    assert "text" not in ask(server, "/file", {"version": first["version"]})[1]
     scene.write_text(TEXT + "# more\n", encoding="utf-8")
     assert ask(server, "/file", {"version": first["version"]})[1]["text"] == TEXT + "# more\n"
     scene.unlink()
     assert ask(server, "/file", {"version": None})[1]["problem"] == "rollers.yaml is not there any more"
+
+
+def test_files_that_a_text_names_are_watched_and_read_anew(tmp_path: Path) -> None:
+    points = tmp_path / "points.csv"
+    points.write_text("5,0,0\n-5,4,0\n-5,-4,0\n", encoding="utf-8")
+    text = "name: plate\nobject:\n  boxes: [{size: [20, 20, 1]}]\n  pose: {position: [0, 0, 5]}\n"
+    text += "cage: {points: {file: points.csv}}\nloads: [{name: weight, gravity: [0, 0, -1]}]\n"
+    (tmp_path / "plate.yaml").write_text(text, encoding="utf-8")
+    desk = Desk(tmp_path / "plate.yaml")
+    answer = desk.answers["/run"]({})
+    names, stamp = answer["beside"]["names"], answer["beside"]["stamp"]
+    assert names == ["points.csv"]
+    assert desk.answers["/file"]({"beside": names})["stamp"] == stamp
+    points.write_text("5,0,1.5\n-5,4,1.5\n-5,-4,1.5\n", encoding="utf-8")
+    assert desk.answers["/file"]({"beside": names})["stamp"] != stamp
+    assert desk.answers["/run"]({})["shots"][-1]["origin"] == pytest.approx([0.0, 0.0, 2.0])
+    with pytest.raises(ValueError, match="no list of names"):
+        desk.answers["/file"]({"beside": [3]})
 
 
 def test_saving_writes_the_file_and_refuses_where_it_was_changed_on_disk(server: ViewServer, scene: Path) -> None:

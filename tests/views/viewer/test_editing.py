@@ -21,6 +21,15 @@ from our_scenes import SCENES
 RAIL = next(path for path in SCENES if path.stem == "rail-pitch")
 TEXT = RAIL.read_text(encoding="utf-8")
 
+PLATE = """\
+name: plate
+object:
+  boxes: [{size: [20, 20, 1]}]
+  pose: {position: [0, 0, 5]}
+cage: {points: {file: points.csv}}
+loads: [{name: weight, gravity: [0, 0, -1]}]
+"""
+
 
 @pytest.fixture
 def scene(tmp_path: Path) -> Path:
@@ -194,6 +203,32 @@ def test_a_save_from_outside_is_taken_and_run(sheet: Page, scene: Path) -> None:
     assert text_of(sheet) == changed
     assert shown_angles(sheet) == pytest.approx(expected_angles(changed), abs=1e-5)
     assert "as in the file" in sheet.locator("#text").inner_text()
+
+
+def test_a_mistake_from_outside_is_told_with_its_line_where_the_text_is_closed(
+    watched: Any, server: ViewServer, scene: Path
+) -> None:
+    page = opened(watched, server)
+    scene.write_text(TEXT.replace("friction", "x").replace("loads:", "laods:"), encoding="utf-8")
+    wait_until(page, "!problems.hidden")
+    line = TEXT[: TEXT.index("loads:")].count("\n") + 1
+    assert f"line {line}: laods: is no known key; did you mean loads?" in page.locator("#problems").inner_text()
+    scene.write_text(TEXT, encoding="utf-8")
+    wait_until(page, "problems.hidden")
+    watched.complaints.clear()  # the browser notes the refusal itself
+
+
+def test_a_file_of_points_that_is_written_anew_is_run(watched: Any, tmp_path: Path) -> None:
+    scene = tmp_path / "plate.yaml"
+    scene.write_text(PLATE, encoding="utf-8")
+    points = tmp_path / "points.csv"
+    points.write_text("5,0,0\n-5,4,0\n-5,-4,0\n", encoding="utf-8")
+    with served(scene) as server:
+        page = opened(watched, server)
+        assert page.locator("#pose dd").first.inner_text() == "0, 0, 0.5 mm"
+        points.write_text("5,0,1\n-5,4,1\n-5,-4,1\n", encoding="utf-8")
+        wait_until(page, "cagepose.state().drawnAnswers === 1")
+        assert page.locator("#pose dd").first.inner_text() == "0, 0, 1.5 mm"
 
 
 def test_a_page_that_is_opened_after_a_save_has_the_new_text(watched: Any, server: ViewServer, scene: Path) -> None:

@@ -11,9 +11,10 @@ from threading import Lock
 from typing import Any
 
 from cagepose.errors import CageposeError, FileProblem, Problem, SceneFileError, printable
+from cagepose.files.files_named import files_named, stamp_of
 from cagepose.files.read import MAX_FILE_BYTES, SCENE_SUFFIXES, decoded
 from cagepose.files.scene_edit import edited
-from cagepose.files.scene_file import read_scene_text, scene_text_of
+from cagepose.files.scene_file import SceneText, read_scene_text, scene_text_of
 from cagepose.files.schema import scene_json_schema
 from cagepose.files.write import write_whole
 from cagepose.views.viewer.vary import runs_with
@@ -53,8 +54,10 @@ class Desk:
         self._path, self._source, self._can_edit = Path(path), os.fspath(path), can_edit
         changes = set_values if method is None else (*set_values, f"method={method}")
         self._version = _version(self._content()) if can_edit and not changes else None
-        self._start = WhatIf(edited(read_scene_text(path), changes))
-        self._what_if_of = lru_cache(TEXTS_KEPT)(self._read)
+        self._scene_text_of = lru_cache(TEXTS_KEPT)(self._read)
+        self._what_if_of = lru_cache(TEXTS_KEPT)(self._made)
+        self._start = edited(read_scene_text(path), changes).text
+        self._what_if({})
         self._writing = Lock()
         self.answers: dict[str, Callable[[Question], dict[str, Any]]] = {"/run": self._run, "/pull": self._pull}
         if can_edit:
@@ -62,11 +65,11 @@ class Desk:
 
     def page_content(self) -> dict[str, Any]:
         """Return what a page needs to ask."""
-        start = self._start
+        start = self._what_if({})
         content = {
-            "controls": [control.document() for control in start.controls],
+            **self._told(start),
             "fileName": f"{self._path.stem}-changed.yaml",
-            "text": _with_plain_ends(start.scene_text.text),
+            "text": _with_plain_ends(self._start),
         }
         if not self._can_edit:
             return content
@@ -90,7 +93,15 @@ class Desk:
         what_if = self._what_if(asked)
         found = what_if.answer(asked.get("values", {}))
         found["text"] = _with_plain_ends(found["text"])
-        return {**found, "controls": [control.document() for control in what_if.controls]}
+        return {**found, **self._told(what_if)}
+
+    def _told(self, what_if: WhatIf) -> dict[str, Any]:
+        """What a page is told of a text beside its run: its controls, and the files that it names."""
+        names = _names(what_if.scene_text)
+        return {
+            "controls": [control.document() for control in what_if.controls],
+            "beside": {"names": names, "stamp": stamp_of(self._path.parent, names)},
+        }
 
     def _pull(self, asked: Question) -> dict[str, Any]:
         return self._what_if(asked).pulled(asked.get("values", {}), asked.get("pull"))
@@ -99,17 +110,28 @@ class Desk:
         return runs_with(self._what_if(asked).scene_text, asked.get("key"), asked.get("numbers"))
 
     def _what_if(self, asked: Question) -> WhatIf:
-        if asked.get("text") is None:
-            return self._start
-        if not self._can_edit:
+        is_start = asked.get("text") is None
+        if not (is_start or self._can_edit):
             raise ValueError("the text cannot be changed from here; serve on this machine alone, without --host")
-        return self._what_if_of(_text(asked))
+        text = self._start if is_start else _text(asked)
+        return self._what_if_of(text, stamp_of(self._path.parent, _names(self._scene_text_of(text))))
 
-    def _read(self, text: str) -> WhatIf:
-        return WhatIf(scene_text_of(text, self._source))
+    def _read(self, text: str) -> SceneText:
+        return scene_text_of(text, self._source)
+
+    def _made(self, text: str, _stamp: str) -> WhatIf:
+        return WhatIf(self._scene_text_of(text))
 
     def _file(self, asked: Question) -> dict[str, Any]:
-        """The file as it is now, its text only where the page knows another version."""
+        """The file as it is now, its text only where the page knows another version; and whether the files that its
+        text names are other ones now.
+        """
+        names = asked.get("beside", [])
+        if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+            raise ValueError("what is beside the scene is no list of names")
+        return {**self._file_now(asked), "stamp": stamp_of(self._path.parent, names)}
+
+    def _file_now(self, asked: Question) -> dict[str, Any]:
         try:
             content = self._content()
             if _version(content) == asked.get("version"):
@@ -154,6 +176,10 @@ class Desk:
         except FileExistsError:
             raise ValueError(f"not saved: {name} is there already; give another name") from None
         return {"name": name}
+
+
+def _names(scene_text: SceneText) -> list[str]:
+    return list(files_named(scene_text.yaml.data).values())
 
 
 def _text(asked: Question) -> str:
