@@ -1,37 +1,29 @@
 // The scene's text beside the picture: it is run when somebody has stopped typing, saved when somebody says so, and taken
 // anew when another program has written the file. It is in a live page alone.
 
-import { post } from "./asking.js";
-import { download } from "./panel.js";
+import { OnDisk } from "./on_disk.js";
 import { Varied } from "./varied.js";
-import { $, element } from "./words.js";
+import { $, button, element } from "./words.js";
 import { Writing } from "./writing.js";
 
 const TYPED_MS = 600; // after the last key
-const LOOK_MS = 1000; // between two looks at the file
 const PER_CENT = 20; // a slider of a number reaches so far from it
 const NOTHING = { deg: 5, other: 1 }; // and so far from 0
-const GONE = "The viewer's server does not answer; start cagepose view again.";
 
 const keyPath = (path) => path.reduce((text, key) => (typeof key === "number" ? `${text}[${key}]` : text ? `${text}.${key}` : key), "");
-const button = (text, title, act) => {
-  const made = element("button", text);
-  made.title = title;
-  made.addEventListener("click", act);
-  return made;
-};
 
 class Sheet {
   // `changedSize()` is called when the picture has more room, or less.
   constructor({ name, schema, version, beside }, panel, changedSize) {
-    Object.assign(this, { name, beside, panel, changedSize, chosen: [], version, onDisk: version && panel.text, begun: panel.text });
+    Object.assign(this, { name, beside, panel, changedSize, chosen: [], begun: panel.text });
+    this.onDisk = new OnDisk(this, name, version, panel.text);
     this.build();
     this.writing = new Writing(this.room, panel.text, schema, { typed: (isNow) => this.typed(isNow), moved: () => this.tellNumber(), altClicked: () => this.addSlider() });
     this.varied = new Varied(this.study, { text: () => this.text, seen: (path, value) => this.write(path, value) });
     panel.editor = this;
     this.tellState();
     this.tellNumber();
-    this.look();
+    this.onDisk.look();
     window.addEventListener("beforeunload", (event) => { if (this.isTyped && this.isUnsaved) event.preventDefault(); });
   }
 
@@ -42,18 +34,15 @@ class Sheet {
     const head = element("div", "", "head");
     this.state = element("small", "");
     this.state.setAttribute("role", "status");
-    this.saveButton = button("save", "write this text into the file", () => this.save());
+    this.saveButton = button("save", "write this text into the file", () => this.onDisk.save());
     head.append(element("strong", this.name), this.state, this.saveButton,
-      button("save as \u2026", "a new file beside this one, or a download", () => this.askName()),
+      button("save as \u2026", "a new file beside this one, or a download", () => this.onDisk.askName()),
       button("\u2715", "close the text", () => this.toggle(false)));
-    this.news = element("div", "", "news");
-    this.news.setAttribute("role", "alert");
-    this.news.hidden = true;
     this.room = element("div", "", "writing");
     this.mistakes = element("div", "", "mistakes");
     this.study = element("div", "", "varied");
     this.foot = element("div", "", "foot");
-    this.section.append(head, this.news, this.room, this.mistakes, this.study, this.foot);
+    this.section.append(head, this.onDisk.news, this.room, this.mistakes, this.study, this.foot);
     $("view").before(this.section);
     this.opener = button("edit text", "the scene's text, beside the picture", () => this.toggle(this.section.hidden));
     this.opener.id = "edittext";
@@ -73,7 +62,7 @@ class Sheet {
   }
 
   get isUnsaved() {
-    return this.onDisk !== null && this.text !== this.onDisk;
+    return this.onDisk.text !== null && this.text !== this.onDisk.text;
   }
 
   // The text was edited by hand: it is run when nothing is typed any more, or now.
@@ -133,101 +122,8 @@ class Sheet {
   }
 
   tellState() {
-    this.state.textContent = this.onDisk === null ? "" : this.isUnsaved ? "edited, not saved" : "as in the file";
+    this.state.textContent = this.onDisk.text === null ? "" : this.isUnsaved ? "edited, not saved" : "as in the file";
     this.saveButton.disabled = !this.isUnsaved;
-  }
-
-  // Tells something about the file, with what can be done about it.
-  tell(words, ...buttons) {
-    this.news.replaceChildren(...(words ? [element("span", words), ...buttons] : []));
-    this.news.hidden = !words;
-  }
-
-  // Looks whether another program has written the file, again and again.
-  async look() {
-    try {
-      if (!document.hidden) await this.compare();
-    } catch (error) {
-      if (!(error instanceof TypeError)) throw error; // a lost connection is told where something is asked for
-    }
-    setTimeout(() => this.look(), LOOK_MS);
-  }
-
-  async compare() {
-    if (this.isSaving) return;
-    const { version: known, beside } = this;
-    const found = await (await post("file", { version: known, beside: beside.names })).json();
-    if (this.version !== known || this.isSaving) return; // saved meanwhile
-    if (this.beside === beside && found.stamp !== beside.stamp) { // of points or of a mesh
-      this.beside = { ...beside, stamp: found.stamp };
-      this.panel.ask();
-    }
-    if (found.problem) {
-      if (!this.isGone) this.tell(`${found.problem}. This text is here still: save it as another file.`);
-      this.isGone = true;
-      return;
-    }
-    if (this.isGone) this.tell("");
-    this.isGone = false;
-    if (found.text === undefined) return;
-    const isEdited = known === null || this.isUnsaved; // known from the start, but for values that the command has set
-    Object.assign(this, { version: found.version, onDisk: found.text });
-    if (!isEdited) this.takeFile();
-    else if (known !== null && found.text !== this.text) this.askWhich();
-    this.tellState();
-  }
-
-  takeFile() {
-    this.tell("");
-    this.begun = this.onDisk;
-    this.replace(this.onDisk);
-  }
-
-  askWhich() {
-    this.toggle(true);
-    this.tell(`${this.name} was changed on disk, and you have edits here that are not saved.`,
-      button("take the file's text", "yours can be had back by undo", () => this.takeFile()),
-      button("keep mine", "the file stays as it is until you save", () => this.tell("")));
-  }
-
-  async save() {
-    this.isSaving = true;
-    const text = this.text;
-    try {
-      const response = await post("save", { text, version: this.version });
-      const answer = await response.json();
-      if (response.ok) {
-        Object.assign(this, { version: answer.version, onDisk: text, begun: text });
-        this.tell("");
-      } else this.tell(answer.problems.join(" "));
-    } catch {
-      this.tell(GONE);
-    } finally {
-      this.isSaving = false;
-    }
-    this.tellState();
-  }
-
-  askName() {
-    const name = Object.assign(document.createElement("input"), { value: this.panel.fileName, size: 24 });
-    name.setAttribute("aria-label", "name of the new file");
-    const save = () => this.saveAs(name.value);
-    name.addEventListener("keydown", (event) => { if (event.key === "Enter") save(); });
-    this.tell("Beside the file, as", name, button("save", "a new file in the same folder", save),
-      button("download", "from the browser", () => { download(this.text, name.value); this.tell(""); }),
-      button("\u2715", "no file", () => this.tell("")));
-    name.focus();
-  }
-
-  async saveAs(name) {
-    try {
-      const response = await post("save-as", { text: this.text, name });
-      const answer = await response.json();
-      this.tell(response.ok ? `Saved as ${answer.name}; this page goes on with ${this.name}.` : answer.problems.join(" "),
-        ...(response.ok ? [] : [button("another name", "", () => this.askName())]), button("\u2715", "close", () => this.tell("")));
-    } catch {
-      this.tell(GONE);
-    }
   }
 
   // What can be done with the number under the cursor.

@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources 721ee694d1f7f1f720e5e972761f8199822f9f24b8587ef6f671708457e62df8).
+// Built by `make page` from page/ (sources 1ce6c97ee24c74b1bd1c2c55dbdcdaa0a834baee4b180507fd867dea68bd67bb).
 /*! Contains parts of three:
 The MIT License
 
