@@ -78,7 +78,7 @@ export class Varied {
         const problem = found.problems?.join(" ") ?? (study.nominal ? null : found.runs[0].problem);
         if (problem) return this.fail(problem);
         if (study.nominal) study.ends.push(...found.runs);
-        else Object.assign(study, { nominal: found.runs[0], unit: found.unit, lengthUnit: found.lengthUnit });
+        else Object.assign(study, { nominal: found.runs[0], unit: found.unit, lengthUnit: found.lengthUnit, noise: found.noise });
         size = Math.max(1, Math.min(MOST_OF_A_BIT, Math.round(size * Math.min(4, BIT_MS / (performance.now() - began)))));
         this.show();
       }
@@ -97,7 +97,7 @@ export class Varied {
   // The runs so far: the value of each, how it ended beside the run of the text as it is, and how far from that.
   get rows() {
     const { values, ends, nominal } = this.study;
-    return ends.map((end, i) => ({ value: values[i], end, kind: kindOf(end, nominal), away: end.center && nominal.center ? norm(sub(end.center, nominal.center)) : null }));
+    return ends.map((end, i) => ({ value: values[i], end, kind: kindOf(end, nominal), away: away(end, this.study) }));
   }
 
   show() {
@@ -131,7 +131,7 @@ export class Varied {
     const across = (number) => EDGE + (width - 2 * EDGE) * (number - value + by) / (2 * by);
     const up = (away) => height - BELOW - (height - BELOW - ABOVE - 8) * (most ? away / most : 0);
     pen.fillStyle = "#5c5c5c";
-    pen.fillText(`end moved by up to ${short(most)} ${lengthUnit}`, EDGE, 11);
+    pen.fillText(most ? `end moved by up to ${short(most)} ${lengthUnit}` : "the end does not move", EDGE, 11);
     [[value - by, "left"], [value, "center"], [value + by, "right"]].forEach(([number, align]) => {
       pen.textAlign = align;
       pen.fillText(short(number), across(number), height - 4);
@@ -155,6 +155,12 @@ export class Varied {
     const nearest = rows.reduce((best, row) => (Math.abs(row.value - wanted) < Math.abs(best.value - wanted) ? row : best));
     this.seen(path, nearest.value);
   }
+}
+
+// How far from the nominal end a run ended; null: nowhere.
+function away({ center }, { nominal, noise }) {
+  const far = center && nominal.center && norm(sub(center, nominal.center));
+  return far !== null && far < noise ? 0 : far;
 }
 
 function coloured(kind) {

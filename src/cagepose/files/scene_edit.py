@@ -75,11 +75,10 @@ def set_in_text(scene_text: SceneText, set_values: Sequence[str]) -> str:
     """As `edited_text`, of values that have been checked. Numbers in the place of numbers change nothing else; with
     other values, blanks within lines may change.
     """
-    plain = YAML(typ="safe", pure=True)
     changes: dict[Path, object] = {}
     for argument in set_values:
         key, _, text = argument.partition("=")
-        changes[parse_key_path(key.strip())] = plain.load(text)
+        changes[parse_key_path(key.strip())] = parse_yaml(text, argument).data if text.strip() else None
     in_place = with_numbers(scene_text.text, scene_text.yaml, changes)
     return with_values(scene_text.text, changes) if in_place is None else in_place
 

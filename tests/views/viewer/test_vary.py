@@ -64,6 +64,31 @@ def test_the_share_that_ends_as_now_is_that_of_runs_one_by_one(asked: Page) -> N
     assert asked.locator("#text .varied form small").inner_text() == "deg"
 
 
+def test_rounding_is_no_motion_of_the_end(watched: Any, tmp_path: Path) -> None:
+    """The upper roller ahead is not touched at the end: the end does not hang on its height."""
+    text = next(path for path in SCENES if path.stem == "rollers").read_text(encoding="utf-8")
+    path = tmp_path / "rollers.yaml"
+    path.write_text(text, encoding="utf-8")
+    with served(path) as server:
+        page = opened(watched, server)
+        page.locator("#edittext").click()
+        page.evaluate("(at) => cagepose.putCursor(at)", text.index("13.5], euler"))
+        page.get_by_role("button", name="vary this").click()
+        page.evaluate("""() => {
+            window.words = [];
+            const write = CanvasRenderingContext2D.prototype.fillText;
+            CanvasRenderingContext2D.prototype.fillText = function (text, ...at) {
+                words.push(text);
+                write.call(this, text, ...at);
+            };
+        }""")
+        page.get_by_label("how many runs").select_option("32 runs")
+        page.get_by_label("tolerance of cage.shapes[2].position[2]").fill("0.1")
+        page.keyboard.press("Enter")
+        wait_until(page, f"{TOLD}.includes('100 % end as now (rests): 32 of 32 runs')")
+        assert "the end does not move" in page.evaluate("words")
+
+
 def test_a_click_into_the_plot_puts_that_value_into_the_text(asked: Page) -> None:
     begin(asked, 0.1, 32)
     wait_until(asked, f"{TOLD}.includes('of 32 runs')")

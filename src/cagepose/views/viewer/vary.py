@@ -10,6 +10,7 @@ from cagepose.errors import SceneError, printable
 from cagepose.files.key_path import parse_key_path, resolved, value_at
 from cagepose.files.scene_file import SceneFile, SceneText
 from cagepose.files.units import from_metres, unit_at
+from cagepose.files.words import LengthWords
 from cagepose.runs.many import Runs, run_many
 
 MOST_NUMBERS = 64
@@ -17,9 +18,9 @@ MOST_NUMBERS = 64
 
 
 def runs_with(scene_text: SceneText, key: object, numbers: object) -> dict[str, Any]:
-    """Return the unit of the number at ``key``, and of the run with each of ``numbers`` in its place: verdict, verdicts
-    of all phases, what touches at the end, and where the centre of gravity is then, in the file's unit of length; of
-    one that cannot be, the reason.
+    """Return the unit of the number at ``key``, below which length there is only rounding, and of the run with each of
+    ``numbers`` in its place: verdict, verdicts of all phases, what touches at the end, and where the centre of gravity
+    is then, in the file's unit of length; of one that cannot be, the reason.
 
     Raises
     ------
@@ -33,7 +34,7 @@ def runs_with(scene_text: SceneText, key: object, numbers: object) -> dict[str, 
         raise ValueError(f"{key} is no number of this scene")
     if not isinstance(numbers, list) or len(numbers) > MOST_NUMBERS or not all(_is_number(one) for one in numbers):
         raise ValueError(f"{key} can be varied by lists of at most {MOST_NUMBERS} numbers")
-    length_unit = scene_text.scene_file().length_unit
+    nominal = scene_text.scene_file()
     made: list[SceneFile | str] = []
     for number in numbers:
         try:
@@ -44,7 +45,8 @@ def runs_with(scene_text: SceneText, key: object, numbers: object) -> dict[str, 
     runs = run_many(scenes, threads=1) if scenes else None
     ends = iter(range(len(scenes)))
     told = [{"problem": one} if isinstance(one, str) or runs is None else _end(runs, next(ends), one) for one in made]
-    return {"unit": unit_at(path, length_unit), "lengthUnit": length_unit, "runs": told}
+    length_unit, noise = nominal.length_unit, LengthWords(nominal.length_unit, nominal.scene.size_m).noise
+    return {"unit": unit_at(path, length_unit), "lengthUnit": length_unit, "noise": noise, "runs": told}
 
 
 def _end(runs: Runs, row: int, made: SceneFile) -> dict[str, Any]:

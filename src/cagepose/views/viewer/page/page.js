@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources 1ce6c97ee24c74b1bd1c2c55dbdcdaa0a834baee4b180507fd867dea68bd67bb).
+// Built by `make page` from page/ (sources b96033030ba4b4dbaae023f0f3efed614afb13d8b5e4f0a006be4d0e1b478e2d).
 /*! Contains parts of three:
 The MIT License
 
