@@ -88,7 +88,7 @@ docs: $(READY)  ## build the documentation into build/docs
 	@$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --builder html docs build/docs
 	@echo "Open build/docs/index.html"
 
-page:  ## bundle the page of `cagepose view` anew, from page/ and three.js (needs node)
+page:  ## bundle the page of `cagepose view` and its editor anew, from page/ (needs node)
 	@cd page && npm ci --silent && node build.mjs
 
 lock:  ## renew requirements.lock from pyproject.toml

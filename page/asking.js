@@ -3,6 +3,8 @@
 
 import { $, element } from "./words.js";
 
+const SETTLING_MS = 20;
+
 export class Asker {
   constructor() {
     this.now = this.next = this.tookMs = null;
@@ -13,22 +15,23 @@ export class Asker {
   }
 
   // `body()` is what to send, as it is then; `answered(answer)` shows what comes back. Where something else is to be run
-  // meanwhile, the answer to a pull is dropped.
-  async ask(path, body, answered) {
-    this.next = { path, body, answered };
+  // meanwhile, the answer to a pull is dropped. `refused(answer)` takes one that says why there is none,
+  // and returns what to tell of it over the picture.
+  async ask(path, body, answered, refused = ({ problems }) => problems) {
+    this.next = { path, body, answered, refused };
     if (this.isBusy) return;
     try {
       while (this.next) {
         [this.now, this.next] = [this.next, null];
         $("busy").hidden = false;
-        const { path, body, answered } = this.now;
+        const { path, body, answered, refused } = this.now;
         const asked = performance.now();
         const response = await post(path, body());
         const answer = await response.json();
         if (path === "pull" && this.next && this.next.path !== path) continue;
-        if (response.ok) answered(answer);
+        const problems = response.ok ? (answered(answer), []) : refused(answer);
         this.tookMs = performance.now() - asked; // the picture included
-        this.complain(response.ok ? [] : answer.problems, path === "pull" ? "answer" : "scene that could be run");
+        this.complain(problems, path === "pull" ? "answer" : "scene that could be run");
       }
     } catch (error) {
       if (!(error instanceof TypeError)) throw error; // what a lost connection is told by
@@ -37,6 +40,11 @@ export class Asker {
       this.now = null;
       $("busy").hidden = true;
     }
+  }
+
+  // Resolves once nothing is asked any more.
+  async settled() {
+    while (this.isBusy) await new Promise((resolve) => { setTimeout(resolve, SETTLING_MS); });
   }
 
   complain(problems, shown) {

@@ -8,10 +8,10 @@ const FULL = 100; // pixels of way pull as hard as the greatest force that acts 
 const LEAST = 4; // pixels: less is a click
 
 export class Hand {
-  // `values()` are those of the sliders; `show(answer, phase)` shows a run that was led on from the end of a phase, and
+  // `scene()` is what the sliders and the text say; `show(answer, phase)` shows a run that was led on from the end of a phase, and
   // `restart()` that which the sliders ask for; `refuse(why)` says why nobody can pull.
-  constructor(asker, grips, { values, show, restart, refuse }) {
-    Object.assign(this, { asker, values, show, refuse });
+  constructor(asker, grips, { scene, show, restart, refuse }) {
+    Object.assign(this, { asker, scene, show, refuse });
     $("handback").addEventListener("click", restart);
     this.start(grips);
   }
@@ -60,7 +60,7 @@ export class Hand {
     let force;
     this.asker.ask("pull", () => {
       force = this.force;
-      return { values: this.values(), pull: { phase: this.led.phase, way: this.led.way, at, force } };
+      return { ...this.scene(), pull: { phase: this.led.phase, way: this.led.way, at, force } };
     }, (answer) => {
       Object.assign(this, { led: answer.led, says: answer.led.says, shownForce: force });
       this.show(answer, answer.led.phase);

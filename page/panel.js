@@ -1,15 +1,17 @@
 // The controls of a live page: what they say is sent to the server, and what it answers is shown.
+//
+// A control changes a value of a text, the base. Once somebody edits the text, it is the base, with what controls say in it.
 
-import { post } from "./asking.js";
 import { $, element } from "./words.js";
 
+// Where a control's value stands: two controls may be of one.
+const place = ({ key, index }) => (index === null ? key : `${key}[${index}]`);
+
 export class Panel {
-  // `answered(data)` shows a new run.
-  constructor(controls, fileName, asker, answered) {
-    Object.assign(this, { controls, fileName, asker, answered });
-    this.values = controls.map((control) => control.value);
+  // `answered(data)` shows a new run. `text` is that of the scene; `base` of it null: the one that the server began with.
+  constructor(controls, fileName, text, asker, answered) {
+    Object.assign(this, { controls, fileName, text, asker, answered, base: null, editor: null });
     this.start = [0, 0, 0]; // how far the start was dragged
-    this.inputs = [];
     this.build();
     $("undo").addEventListener("click", () => this.undo());
     $("save").addEventListener("click", () => this.save());
@@ -17,6 +19,10 @@ export class Panel {
   }
 
   build() {
+    const scrolled = $("controls").scrollTop;
+    this.values = this.controls.map((control) => control.value);
+    this.inputs = [];
+    $("controls").replaceChildren();
     let group = null;
     this.controls.forEach((control, which) => {
       if (!group || group.dataset.name !== control.group) {
@@ -25,11 +31,20 @@ export class Panel {
         group.append(element("legend", control.group === "cage" ? "cage (the start moves with it)" : control.group));
         $("controls").append(group);
       }
-      const row = element("label", "");
+      const row = element("label", "", control.remove ? "mine" : "");
       row.append(element("span", control.label));
       this.inputs.push(control.choices.length ? this.choice(control, which, row) : this.slider(control, which, row));
+      if (control.remove) row.append(this.remover(control));
       group.append(row);
     });
+    $("controls").scrollTop = scrolled;
+  }
+
+  remover(control) {
+    const button = element("button", "\u2715");
+    button.setAttribute("aria-label", `remove the slider of ${control.label}`);
+    button.addEventListener("click", (event) => { event.preventDefault(); control.remove(); });
+    return button;
   }
 
   choice(control, which, row) {
@@ -56,7 +71,12 @@ export class Panel {
   }
 
   change(which, value) {
-    this.values[which] = value;
+    const at = place(this.controls[which]);
+    this.controls.forEach((control, other) => {
+      if (place(control) !== at) return;
+      this.values[other] = value;
+      if (other !== which) this.inputs[other].forEach((input) => { input.value = value; });
+    });
     this.ask();
   }
 
@@ -66,6 +86,7 @@ export class Panel {
   }
 
   undo() {
+    if (this.editor) return this.editor.undoAll();
     this.start = [0, 0, 0];
     this.controls.forEach((control, which) => {
       this.values[which] = control.value;
@@ -74,7 +95,30 @@ export class Panel {
     this.ask();
   }
 
-  // Only what differs from the file; of a vector all components.
+  // The text is another one now, in which all stands that controls have said.
+  edit(text) {
+    this.base = text;
+    this.start = [0, 0, 0];
+    this.controls.forEach((control, which) => { control.value = this.values[which]; });
+  }
+
+  // Shows sliders for numbers of the text before all others.
+  addMine(controls) {
+    this.controls = [...controls, ...this.controls.filter((control) => !control.remove)];
+    this.build();
+  }
+
+  // Goes to the slider that changes a place of the text; whether there is one.
+  goTo(at) {
+    const which = this.controls.findIndex((control) => [place(control), control.key === "friction" ? "friction.coefficient" : null].includes(at));
+    if (which >= 0) {
+      this.inputs[which][0].scrollIntoView({ block: "nearest" });
+      this.inputs[which][0].focus();
+    }
+    return which >= 0;
+  }
+
+  // Only what differs from the base; of a vector all components.
   changed() {
     const keys = new Set(this.controls.filter((control, which) => this.values[which] !== control.value).map((control) => control.key));
     const values = this.start.some((value) => value) ? { start: this.start } : {};
@@ -86,19 +130,37 @@ export class Panel {
     return values;
   }
 
+  question() {
+    return { text: this.base, values: this.changed() };
+  }
+
   ask() {
-    this.asker.ask("run", () => this.changed(), this.answered);
+    let asked;
+    this.asker.ask("run", () => { asked = this.question(); return asked; }, (answer) => {
+      if (asked.text === this.base) this.take(answer, asked); // else the text has been edited meanwhile
+      this.answered(answer);
+    }, (refusal) => this.editor?.refused(refusal, asked) ?? refusal.problems);
+  }
+
+  take(answer, asked) {
+    this.text = answer.text;
+    this.editor?.answered(answer);
+    if (asked.text === null || Object.keys(asked.values).length || Object.keys(this.changed()).length) return;
+    const mine = this.editor?.controls() ?? [];
+    const controls = [...mine, ...answer.controls];
+    if (JSON.stringify(controls) === JSON.stringify(this.controls)) return;
+    this.controls = controls;
+    this.build();
   }
 
   async save() {
-    try {
-      const response = await post("scene", this.changed());
-      if (!response.ok) return this.asker.complain((await response.json()).problems, "scene that could be run");
-      const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(await response.blob()), download: this.fileName });
-      link.click();
-      URL.revokeObjectURL(link.href);
-    } catch {
-      this.asker.complain(["The viewer's server does not answer; start cagepose view again."], "answer");
-    }
+    await this.asker.settled();
+    download(this.text, this.fileName);
   }
+}
+
+export function download(text, name) {
+  const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(new Blob([text], { type: "application/yaml" })), download: name });
+  link.click();
+  URL.revokeObjectURL(link.href);
 }

@@ -359,7 +359,7 @@ $("cutplace").addEventListener("input", () => { drawing.section.move(Number($("c
 for (const way of ["cutturn", "cuttilt"]) $(way).addEventListener("input", () => { drawing.section.face(Number($("cutturn").value), Number($("cuttilt").value)); refresh(); });
 document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => drawing?.camera.home(button.dataset.view)));
 document.addEventListener("keydown", (event) => {
-  if (event.target.matches("input, button, select, summary")) return;
+  if (event.target.matches("input, button, select, summary") || event.target.isContentEditable) return;
   const act = { " ": toggle, ArrowLeft: () => step(-1), ArrowRight: () => step(1), Home: () => seek(0), End: () => seek(end) }[event.key];
   if (act) { event.preventDefault(); act(); }
 });
@@ -391,8 +391,9 @@ $("exaggeration").max = data.exaggerations.length - 1;
 for (const option of ["names", "start", "glass", "perspective", "points", "cut", "dimensions"]) $(option).disabled = !drawing;
 if (drawing) $("names").checked = drawing.allNames;
 if (!data.points.length) $("points").parentElement.hidden = true;
-if (data.controls) panel = new Panel(data.controls, data.fileName, asker, replaceRun);
-if (panel && drawing) hand = new Hand(asker, data.grips, { values: () => panel.changed(), show: showLed, restart: () => panel.ask(), refuse: (why) => asker.complain([why], "answer") });
+if (data.controls) panel = new Panel(data.controls, data.fileName, data.text, asker, replaceRun);
+if (panel && drawing) hand = new Hand(asker, data.grips, { scene: () => panel.question(), show: showLed, restart: () => panel.ask(), refuse: (why) => asker.complain([why], "answer") });
+if (data.edit) window.cageposeEditor({ ...data.edit, beside: data.beside }, panel, () => { refresh(); drawing?.fit(); });
 $("pull").parentElement.hidden = !hand;
 if (hand) $("scene").addEventListener("pointermove", hover);
 show();

@@ -11,6 +11,13 @@ export function element(tag, text, className) {
   return made;
 }
 
+export function button(text, title, act) {
+  const made = element("button", text);
+  made.title = title;
+  made.addEventListener("click", act);
+  return made;
+}
+
 // A length to four digits, in the scene's unit; what is small, in micrometres or nanometres.
 export function gapWords(length, unit) {
   const metres = { mm: 1e-3, m: 1 }[unit];

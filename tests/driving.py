@@ -16,10 +16,10 @@ from playwright.sync_api import Page
 
 from cagepose import run
 from cagepose.files.scene_file import read_scene_text
+from cagepose.views.viewer.editing import Desk
 from cagepose.views.viewer.page import page as page_text
 from cagepose.views.viewer.playback import playback
 from cagepose.views.viewer.server import ViewServer, open_server
-from cagepose.views.viewer.what_if import WhatIf
 
 HOST = "127.0.0.1"
 _WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
@@ -40,9 +40,9 @@ def served(scene_path: Path, *, can_change: bool = True) -> Iterator[ViewServer]
     """A server in this process, with or without controls."""
     text = read_scene_text(scene_path)
     scene_file = text.scene_file()
-    what_if = WhatIf(text) if can_change else None
+    desk = Desk(scene_path) if can_change else None
     film = playback(run(scene_file.scene), scene_file.length_unit)
-    with open_server(page_text(film, what_if), what_if, HOST, free_port()) as server:
+    with open_server(page_text(film, desk), desk, HOST, free_port()) as server:
         threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True).start()
         yield server
         server.shutdown()

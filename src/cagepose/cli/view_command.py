@@ -11,8 +11,8 @@ from cagepose.cli.options import FILE, FileName, MethodOption, SetOption, refusa
 from cagepose.cli.run_source import RunOrSceneArgument, read_run_or_scene, run_of
 
 if TYPE_CHECKING:
+    from cagepose.views.viewer.editing import Desk
     from cagepose.views.viewer.playback import Playback
-    from cagepose.views.viewer.what_if import WhatIf
 
 PORT_USUAL = 8737
 
@@ -64,8 +64,8 @@ def view_command(
 
     run, shown = run_file.run, playback(run_file.run, run_file.length_unit)
     if export is None:
-        what_if = None if isinstance(source, RunFile) else _what_if(run_or_scene, set_values, method)
-        return _serve(shown, what_if, host, port)
+        desk = None if isinstance(source, RunFile) else _desk(run_or_scene, set_values, method, host)
+        return _serve(shown, desk, host, port)
     try:
         write_whole(export, _content(shown, output_suffix(export, EXPORTS)))
     except OSError as error:
@@ -88,21 +88,21 @@ def _content(shown: Playback, suffix: str) -> bytes:
     return (mp4_bytes if suffix == ".mp4" else gif_bytes)(shown.run, shown.length_unit)
 
 
-def _what_if(scene: str, set_values: tuple[str, ...], method: str | None) -> WhatIf:
-    from cagepose.files.scene_file import read_scene_text
-    from cagepose.views.viewer.what_if import WhatIf
+def _desk(scene: str, set_values: tuple[str, ...], method: str | None, host: str) -> Desk:
+    from cagepose.views.viewer.editing import Desk
+    from cagepose.views.viewer.server import LOOPBACK
 
-    return WhatIf(read_scene_text(scene), set_values, method)
+    return Desk(scene, set_values, method, can_edit=host in LOOPBACK)
 
 
-def _serve(shown: Playback, what_if: WhatIf | None, host: str, port: int) -> int:
+def _serve(shown: Playback, desk: Desk | None, host: str, port: int) -> int:
     """Serve the page until somebody presses Ctrl-C."""
     from cagepose.errors import printable
     from cagepose.views.viewer.page import page
     from cagepose.views.viewer.server import open_server
 
     try:
-        server = open_server(page(shown, what_if), what_if, host, port)
+        server = open_server(page(shown, desk), desk, host, port)
     except OSError as error:
         sys.stderr.write(refusal(f"--host {host} --port {port}", error) + "\n")
         return 2

@@ -10,6 +10,7 @@ import numpy as np
 from ruamel.yaml import YAML
 
 from cagepose.files.key_path import Path, parse_key_path, set_value, value_at
+from cagepose.files.numbers_in_text import with_numbers
 from cagepose.files.scene_file import SceneText
 from cagepose.files.yaml_source import parse_yaml
 
@@ -67,12 +68,19 @@ def edited_text(scene_text: SceneText, set_values: Sequence[str]) -> str:
         The scene that would result cannot be used, see `load_scene`.
     """
     scene_text.scene_file(set_values)
-    plain = YAML(typ="safe", pure=True)
+    return set_in_text(scene_text, set_values)
+
+
+def set_in_text(scene_text: SceneText, set_values: Sequence[str]) -> str:
+    """As `edited_text`, of values that have been checked. Numbers in the place of numbers change nothing else; with
+    other values, blanks within lines may change.
+    """
     changes: dict[Path, object] = {}
     for argument in set_values:
         key, _, text = argument.partition("=")
-        changes[parse_key_path(key.strip())] = plain.load(text)
-    return with_values(scene_text.text, changes)
+        changes[parse_key_path(key.strip())] = parse_yaml(text, argument).data if text.strip() else None
+    in_place = with_numbers(scene_text.text, scene_text.yaml, changes)
+    return with_values(scene_text.text, changes) if in_place is None else in_place
 
 
 def with_values(text: str, changes: Mapping[Path, object]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +16,7 @@ from pydantic import ValidationError
 from cagepose.errors import FileProblem, Problem, SceneError, SceneFileError, key_path
 from cagepose.files.expression import Expression
 from cagepose.files.file_kind import expect_kind
+from cagepose.files.files_named import files_named
 from cagepose.files.key_path import Path as KeyPath
 from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
 from cagepose.files.messages import Finding, schema_findings, shown
@@ -269,20 +270,11 @@ def refused_at(path: KeyPath, study: StudyFile, source: str, message: str) -> Sc
 def copies(study: StudyFile) -> dict[str, bytes]:
     """Return the study, its scene and the files that this names, by their names in a folder of their own."""
     text, found, names = study.scene_text.text, dict[str, bytes](), dict[KeyPath, object]()
-    for path, name in _files_named(study.scene_text.yaml.data, ()):
+    for path, name in files_named(study.scene_text.yaml.data).items():
         found[copy := "-".join(map(str, path[:-1])) + Path(name).suffix] = (study.scene_text.folder / name).read_bytes()
         names[path] = copy
     found[SCENE_NAME] = (with_values(text, names) if names else text).encode()
     return {**found, STUDY_NAME: with_values(study.text, {("scene",): SCENE_NAME}).encode()}
-
-
-def _files_named(here: object, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
-    """Yield where plain scene data name a file of points or of a mesh, and its name."""
-    if isinstance(here, str) and path[-1:] == ("file",) and path[0] in ("object", "cage"):
-        yield path, here
-    pairs = here.items() if isinstance(here, dict) else enumerate(here) if isinstance(here, list) else ()
-    for key, value in pairs:
-        yield from _files_named(value, (*path, key))
 
 
 def study_text(content: Mapping[str, object]) -> str:

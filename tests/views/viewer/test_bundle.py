@@ -1,4 +1,4 @@
-"""The bundle of the page is made of the sources that stand beside it."""
+"""The bundles of the page are made of the sources that stand beside them."""
 
 from __future__ import annotations
 
@@ -12,28 +12,33 @@ from pathlib import Path
 import pytest
 
 SOURCES = Path(__file__).resolve().parents[3] / "page"
-BUNDLE = files("cagepose.views.viewer") / "page" / "page.js"
+BUILT = files("cagepose.views.viewer") / "page"
+BUNDLES = ("page.js", "editor.js")
 
 
-def test_the_bundle_names_the_sources_that_it_was_made_of():
+@pytest.mark.parametrize("name", BUNDLES)
+def test_a_bundle_names_the_sources_that_it_was_made_of(name: str) -> None:
     """Needs no node: the bundle's first line has the digest of all sources."""
     names = sorted(path.name for path in SOURCES.iterdir() if re.search(r"\.m?js$|^package.*json$", path.name))
     digest = hashlib.sha256()
-    for name in names:
-        digest.update(f"{name}\n".encode() + (SOURCES / name).read_bytes())
-    first_line = BUNDLE.read_text(encoding="utf-8").partition("\n")[0]
+    for source in names:
+        digest.update(f"{source}\n".encode() + (SOURCES / source).read_bytes())
+    first_line = (BUILT / name).read_text(encoding="utf-8").partition("\n")[0]
     assert digest.hexdigest() in first_line, "the page's sources were changed; run `make page`"
 
 
-def test_the_bundle_has_the_licence_of_what_it_contains():
-    head = BUNDLE.read_text(encoding="utf-8")[:3000]
-    assert "three.js authors" in head
-    assert "The MIT License" in head
+@pytest.mark.parametrize(
+    ("name", "owners"),
+    [("page.js", ["three.js authors"]), ("editor.js", ["Marijn Haverbeke", "@codemirror/view", "@lezer/yaml"])],
+)
+def test_a_bundle_has_the_licences_of_what_it_contains(name: str, owners: list[str]) -> None:
+    head = (BUILT / name).read_text(encoding="utf-8")[:12_000]
+    assert all(owner in head for owner in [*owners, "Permission is hereby granted, free of charge"])
 
 
-def test_the_bundle_is_what_the_sources_give(tmp_path):
+def test_the_bundles_are_what_the_sources_give(tmp_path: Path) -> None:
     if shutil.which("node") is None or not (SOURCES / "node_modules").is_dir():
         pytest.skip("node or page/node_modules is missing; `make page` uses the one to install the other")
-    built = tmp_path / "page.js"
-    subprocess.run(["node", SOURCES / "build.mjs", built], check=True, timeout=120)
-    assert built.read_text(encoding="utf-8") == BUNDLE.read_text(encoding="utf-8")
+    subprocess.run(["node", SOURCES / "build.mjs", tmp_path], check=True, timeout=120)
+    for name in BUNDLES:
+        assert (tmp_path / name).read_text(encoding="utf-8") == (BUILT / name).read_text(encoding="utf-8")

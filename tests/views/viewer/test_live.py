@@ -50,7 +50,7 @@ def test_a_slider_moves_the_object_as_the_solver_says_and_nothing_outside_is_ask
     expected = expected_angles("cage.pose.euler_zyx_deg=[0,0.25,0]")
     assert shown_angles(page) == pytest.approx(expected, abs=1e-5)
     slide(page, "push: direction y", -0.3)
-    assert set(watched.requests) == {server.address, server.address + "run"}
+    assert set(watched.requests) == {server.address, server.address + "run", server.address + "file"}
 
 
 def test_undo_goes_back_to_the_values_of_the_file(watched, server):
@@ -210,13 +210,13 @@ def test_what_a_refused_request_sent_is_not_read_as_the_next_one(server, head):
     ],
 )
 def test_bad_values_are_refused_with_the_reason(server, values, told):
-    status, body = post(server, "/run", json.dumps(values).encode())
+    status, body = post(server, "/run", json.dumps({"values": values}).encode())
     assert status == 422
     assert told in " ".join(json.loads(body)["problems"])
 
 
 def test_a_start_that_was_dragged_into_the_cage_is_told_without_its_numbers(server):
-    status, body = post(server, "/run", json.dumps({"start": [-3.0, -2.0, -2.0]}).encode())
+    status, body = post(server, "/run", json.dumps({"values": {"start": [-3.0, -2.0, -2.0]}}).encode())
     assert status == 422
     problems = json.loads(body)["problems"]
     assert all(re.match(r"cage\.points\.C\d+: starts \S+ mm inside object\.boxes", problem) for problem in problems)

@@ -11,6 +11,7 @@ import pytest
 from cagepose import Pose, load_scene, run
 from cagepose.errors import CageposeError
 from cagepose.files.scene_file import read_scene_text
+from cagepose.views.viewer.editing import Desk
 from cagepose.views.viewer.server import ViewServer
 from cagepose.views.viewer.what_if import WhatIf
 from driving import opened, served, set_range, shown_angles, slide, state, wait_until
@@ -139,26 +140,29 @@ def test_a_cage_given_by_a_quaternion_has_sliders_of_angles(sled):
     what_if = WhatIf(read_scene_text(sled))
     pitch = next(control for control in what_if.controls if (control.group, control.label) == ("cage", "pitch"))
     assert pitch.value == pytest.approx(math.degrees(2.0 * math.atan2(0.0141418, 0.9999)), abs=1e-9)
-    assert "quat_wxyz" not in what_if.saved({})
-    assert "# pitch 1.6 deg" in what_if.saved({"friction": 0.2})
+    text = what_if.answer({"friction": 0.2})["text"]
+    assert "quat_wxyz" not in text
+    assert "# pitch 1.6 deg" in text
 
 
 def test_sliders_start_from_the_values_that_the_command_set(sled):
-    what_if = WhatIf(read_scene_text(sled), ("cage.pose.position=[0, 0, -0.25]", "cage.points[8][0]=55"), "stepwise")
-    values = {(control.group, control.label): control.value for control in what_if.controls}
+    desk = Desk(sled, ("cage.pose.position=[0, 0, -0.25]", "cage.points[8][0]=55"), "stepwise")
+    controls = desk.page_content()["controls"]
+    values = {(control["group"], control["label"]): control["value"] for control in controls}
     assert values["cage", "z"] == -0.25
     assert values["adjustable", "stop"] == 55.0
     assert values["contacts", "method"] == "stepwise"
     expected = run(load_scene(sled, ["cage.pose.position=[0, 0, -0.25]", "cage.points[8][0]=55"]), "stepwise")
-    assert what_if.answer({})["shots"][-1]["origin"] == pytest.approx((expected.pose.position_m * 1000.0).tolist())
+    answer = desk.answers["/run"]({"values": {}})
+    assert answer["shots"][-1]["origin"] == pytest.approx((expected.pose.position_m * 1000.0).tolist())
 
 
 def test_without_friction_in_the_file_the_slider_shows_what_the_method_takes(tmp_path):
     path = tmp_path / "sled.yaml"
     path.write_text(SLED.replace("friction: {coefficient: 0.1}\n", ""), encoding="utf-8")
     for method, friction in (("stepwise", math.tan(0.1)), ("quasistatic", 0.0)):
-        control = next(c for c in WhatIf(read_scene_text(path), (), method).controls if c.key == "friction")
-        assert control.value == pytest.approx(friction, abs=1e-6)
+        control = next(c for c in Desk(path, (), method).page_content()["controls"] if c["key"] == "friction")
+        assert control["value"] == pytest.approx(friction, abs=1e-6)
 
 
 @pytest.mark.parametrize("path", OUR_SCENES, ids=[path.stem for path in OUR_SCENES])
@@ -227,7 +231,7 @@ def test_the_start_goes_with_the_cage_and_a_saved_scene_runs_to_the_same_end(tmp
     values = {"cage.pose.euler_zyx_deg": [0.2, 0.4, 0.1], "cage.pose.position": [3.0, 0.0, 0.0]}
     answer = what_if.answer(values)
     saved = tmp_path / "saved.yaml"
-    saved.write_text(what_if.saved(values), encoding="utf-8")
+    saved.write_text(answer["text"], encoding="utf-8")
     scene, before = load_scene(saved), load_scene(RAIL)
     relative = [s.cage.pose_world_cage.inverse() @ s.object.pose_world_object for s in (before, scene)]
     assert relative[1].position_m == pytest.approx(relative[0].position_m, abs=1e-12)

@@ -9,40 +9,52 @@ from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any
 
+from cagepose.views.viewer.editing import Desk
 from cagepose.views.viewer.hand import grips
 from cagepose.views.viewer.page_data import page_data
 from cagepose.views.viewer.playback import Playback
-from cagepose.views.viewer.what_if import WhatIf
 
 DATA = "@DATA@"
 """Where the data of a run stand in the page."""
 
 
-def page(shown: Playback, what_if: WhatIf | None = None) -> str:
+def page(shown: Playback, desk: Desk | None = None) -> str:
     """Return the page. It asks nothing of any server, and tells the browser to allow nothing else.
 
-    With ``what_if`` it has controls, and asks the server that it came from.
+    With ``desk`` it has controls and, where the text may be edited, an editor, and asks the server that it came from.
     """
     content = page_data(shown)
-    if what_if is not None:
-        content["controls"] = [control.document() for control in what_if.controls]
-        content["fileName"] = what_if.file_name
-        content["grips"] = grips(shown.run)
-    return page_of(shown.run.scene.name, data_text(content), "" if what_if is None else "; connect-src 'self'")
+    if desk is None:
+        return page_of(shown.run.scene.name, data_text(content))
+    content |= {**desk.page_content(), "grips": grips(shown.run)}
+    connect = "; connect-src 'self'"
+    return page_of(shown.run.scene.name, data_text(content), connect, has_editor="edit" in content)
 
 
-def page_of(title: str, data: str, connect: str = "") -> str:
+def page_of(title: str, data: str, connect: str = "", *, has_editor: bool = False) -> str:
     """Return the page with a title and data of a run; ``connect``: what it may ask of a server."""
-    folder = files("cagepose.views.viewer") / "page"
     parts = {
         "@TITLE@": html.escape(title),
         "@CONNECT@": connect,
-        "@STYLE@": (folder / "page.css").read_text(encoding="utf-8"),
+        "@STYLE@": _read("page.css"),
         DATA: data,
-        "@SCRIPT@": (folder / "page.js").read_text(encoding="utf-8").replace("</script", "<\\/script"),
+        "@EDITOR@": _editor() if has_editor else "",
+        "@SCRIPT@": _script("page.js"),
     }
-    template = (folder / "page.html").read_text(encoding="utf-8")
+    template = _read("page.html")
     return re.sub("@[A-Z]+@", lambda place: parts[place[0]], template)
+
+
+def _editor() -> str:
+    return f"<style>\n{_read('editor.css')}\n</style>\n<script>\n{_script('editor.js')}\n</script>\n"
+
+
+def _script(name: str) -> str:
+    return _read(name).replace("</script", "<\\/script")
+
+
+def _read(name: str) -> str:
+    return (files("cagepose.views.viewer") / "page" / name).read_text(encoding="utf-8")
 
 
 def data_text(content: Mapping[str, Any]) -> str:

@@ -1,8 +1,9 @@
-"""The live viewer: the page, and a server on this machine that runs the scene when a slider moves or a hand pulls.
+"""The live viewer: the page, and a server on this machine that runs the scene when its text is edited, a slider moves
+or a hand pulls.
 
-The server keeps nothing between two questions, so that windows cannot disturb each other: each sends all of its values.
-It answers only who names it by its own name, and takes values only as JSON, which a page from elsewhere cannot send: no
-other page that is open in the same browser can use it.
+The server keeps nothing between two questions, so that windows cannot disturb each other: each sends its text and
+values. It answers only who names it by its own name, and takes values only as JSON, which a page from elsewhere cannot
+send: no other page that is open in the same browser can use it.
 """
 
 from __future__ import annotations
@@ -16,25 +17,27 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
 from cagepose.errors import CageposeError
-from cagepose.views.viewer.what_if import WhatIf
+from cagepose.files.read import MAX_FILE_BYTES
+from cagepose.views.viewer.editing import Desk
 
 PORTS_TRIED = 50
 """From the first one up."""
-MAX_BODY_BYTES = 64 * 1024
+MAX_BODY_BYTES = 2 * MAX_FILE_BYTES
+"""A text has escapes for its line ends and quotes on its way."""
 LOOPBACK = ("127.0.0.1", "localhost")
 
 
 class ViewServer(ThreadingHTTPServer):
-    """Serves one page, and answers what its controls ask if there is a scene file to change."""
+    """Serves one page, and answers what its controls ask if there is a scene file beside it."""
 
     daemon_threads = True
     # Else the port of a viewer that has just ended is taken for a minute, and a page that is still open asks in vain.
     # On Windows, a port that somebody else listens on would then seem free.
     allow_reuse_address = os.name != "nt"
 
-    def __init__(self, page: str, what_if: WhatIf | None, host: str, port: int) -> None:
+    def __init__(self, page: str, desk: Desk | None, host: str, port: int) -> None:
         self.page = page.encode()
-        self.what_if = what_if
+        self.desk = desk
         super().__init__((host, port), _Answers)
         self.names = {f"{name}:{self.server_port}" for name in LOOPBACK} if host in LOOPBACK else None
 
@@ -49,7 +52,7 @@ class ViewServer(ThreadingHTTPServer):
             super().handle_error(request, client_address)
 
 
-def open_server(page: str, what_if: WhatIf | None, host: str, port: int) -> ViewServer:
+def open_server(page: str, desk: Desk | None, host: str, port: int) -> ViewServer:
     """Return a server that listens on ``port``, or on the next free one; it answers once `serve_forever` is called.
 
     Raises
@@ -59,7 +62,7 @@ def open_server(page: str, what_if: WhatIf | None, host: str, port: int) -> View
     """
     for candidate in range(port, min(port + PORTS_TRIED, 2**16)):
         try:
-            return ViewServer(page, what_if, host, candidate)
+            return ViewServer(page, desk, host, candidate)
         except OSError as error:
             if error.errno not in (errno.EADDRINUSE, errno.EACCES):
                 raise
@@ -83,22 +86,18 @@ class _Answers(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         if not self._is_meant():
             return
-        what_if = self.server.what_if
-        if what_if is None or self.path not in ("/run", "/pull", "/scene"):
+        desk = self.server.desk
+        answer = None if desk is None else desk.answers.get(self.path)
+        if desk is None or answer is None:
             self.close_connection = True  # what was sent is left unread, and must not be taken for the next request
             self._send(HTTPStatus.NOT_FOUND, "text/plain", b"nothing can be changed here\n")
             return
         try:
-            values = self._values()
-            if self.path == "/scene":
-                self._send(HTTPStatus.OK, "application/yaml", what_if.saved(values).encode())
-            elif self.path == "/pull":
-                asked = values if isinstance(values, dict) else {}
-                self._send_json(HTTPStatus.OK, what_if.pulled(asked.get("values"), asked.get("pull")))
-            else:
-                self._send_json(HTTPStatus.OK, what_if.answer(values))
-        except (CageposeError, ValueError, TimeoutError) as error:
-            self._send_json(HTTPStatus.UNPROCESSABLE_ENTITY, {"problems": what_if.problems(error)})
+            found = answer(self._question())
+        except (CageposeError, ValueError, TimeoutError, OSError) as error:
+            self._send_json(HTTPStatus.UNPROCESSABLE_ENTITY, desk.refusal(error))
+        else:
+            self._send_json(HTTPStatus.OK, found)
 
     def _is_meant(self) -> bool:
         names = self.server.names
@@ -108,7 +107,7 @@ class _Answers(BaseHTTPRequestHandler):
         self._send(HTTPStatus.FORBIDDEN, "text/plain", b"this server answers only under its own name\n")
         return False
 
-    def _values(self) -> object:
+    def _question(self) -> dict[str, Any]:
         length = self.headers.get("Content-Length") or ""
         if not (length.isascii() and length.isdigit() and int(length) <= MAX_BODY_BYTES):
             self.close_connection = True
@@ -117,9 +116,12 @@ class _Answers(BaseHTTPRequestHandler):
         if self.headers.get_content_type() != "application/json":
             raise ValueError("values must be sent as JSON")
         try:
-            return json.loads(body)
+            question = json.loads(body)
         except RecursionError:
             raise ValueError("values are nested too deep") from None
+        if not isinstance(question, dict):
+            raise ValueError("what is asked is no mapping")
+        return question
 
     def _send_json(self, status: HTTPStatus, content: dict[str, Any]) -> None:
         self._send(status, "application/json", json.dumps(content, allow_nan=False, separators=(",", ":")).encode())

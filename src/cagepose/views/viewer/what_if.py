@@ -1,5 +1,5 @@
-"""A scene file that a viewer changes and runs again, and again. Between two questions it keeps its last runs, from
-which pulls go on, and nothing else: what it answers hangs on the question alone.
+"""The text of a scene that a viewer changes and runs again, and again. Between two questions it keeps its last runs,
+from which pulls go on, and nothing else: what it answers hangs on the question alone.
 """
 
 from __future__ import annotations
@@ -8,15 +8,13 @@ import copy
 import json
 import math
 from functools import lru_cache
-from pathlib import PurePath
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from cagepose.errors import CageposeError, Problem, SceneFileError
-from cagepose.files.key_path import parse_key_path, set_value, value_at
+from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
 from cagepose.files.parameters import evaluated
-from cagepose.files.scene_edit import ANGLE_DECIMALS, edited, edited_text, setting, with_cage_angles
+from cagepose.files.scene_edit import ANGLE_DECIMALS, set_in_text, setting, with_cage_angles
 from cagepose.files.scene_file import SceneFile, SceneText
 from cagepose.files.units import from_metres, to_metres
 from cagepose.model.pose import Pose
@@ -29,6 +27,7 @@ from cagepose.views.viewer.stage import Stage
 
 START = "start"
 """What a page calls the way, (3,) in the scene's unit, by which somebody dragged the start."""
+CAGE_POSE, OBJECT_POSE = "cage.pose", "object.pose"
 LENGTH_DECIMALS = 12
 """Lengths of a start pose are written with so many decimals in the scene's unit."""
 SHOTS_PER_MOTION = 4
@@ -39,48 +38,49 @@ RUNS_KEPT = 8
 class _Ran(NamedTuple):
     shown: Playback
     stage: Stage
+    text: str
 
 
 class WhatIf:
-    """Runs one scene file with values that somebody asks for. The start pose goes with the cage.
+    """Runs one scene with values that somebody asks for. The start pose goes with the cage.
 
     Attributes
     ----------
+    scene_text
+        As it was given.
     controls
-        What may be asked for.
-    file_name
-        What the file with changed values may be called.
+        What may be asked for, besides all numbers of the text by their keys.
     """
 
-    def __init__(self, scene_text: SceneText, set_values: tuple[str, ...] = (), method: str | None = None) -> None:
-        """``set_values`` and ``method`` change the file before anybody else does; a cage's quaternion becomes angles.
+    def __init__(self, scene_text: SceneText) -> None:
+        """A cage's quaternion becomes angles.
 
         Raises
         ------
         SceneFileError
             The scene cannot be used, see `load_scene`.
         """
-        changes = set_values if method is None else (*set_values, f"method={method}")
-        self._text = with_cage_angles(edited(scene_text, changes))
+        self.scene_text = scene_text
+        self._text = with_cage_angles(scene_text)
         of = value_at(self._text.yaml.data, ("friction", "of"))
         self._friction_of = {"of": of} if of else {}
         self._scene_file = self._text.scene_file()
         self.controls: list[Control] = controls(self._text)
-        self.file_name = f"{PurePath(scene_text.yaml.source).stem}-changed.yaml"
         self._ran = lru_cache(RUNS_KEPT)(self._run)
 
     def answer(self, values: object) -> dict[str, Any]:
-        """Return the data of a page for the scene with ``values``, a mapping from keys of controls.
+        """Return the data of a page for the scene with ``values``, a mapping from keys, and its text with them.
 
         Raises
         ------
         SceneFileError
             The scene with these values cannot be used; the message says why.
         ValueError
-            A key that no control has, or a value that is neither a number, a word nor a list of numbers.
+            A key that no control and no number of the text has, or a value that is neither a number, a word nor a list
+            of numbers.
         """
-        shown, stage = self._ran(json.dumps(values, sort_keys=True))
-        return {**page_data(shown, stage), "grips": grips(shown.run)}
+        shown, stage, text = self._ran(json.dumps(values, sort_keys=True))
+        return {**page_data(shown, stage), "grips": grips(shown.run), "text": text}
 
     def pulled(self, values: object, pull: object) -> dict[str, Any]:
         """Return the data of a page for the scene with ``values`` on which somebody pulls, see `grip_of`.
@@ -92,16 +92,17 @@ class WhatIf:
         TimeoutError
             See `pulled`.
         """
-        shown, stage = self._ran(json.dumps(values, sort_keys=True))
+        shown, stage, _ = self._ran(json.dumps(values, sort_keys=True))
         return pulled(shown, stage, grip_of(pull, shown.run, shown.length_unit))
 
     def _run(self, values: str) -> _Ran:
-        scene_file = self.scene(json.loads(values))
+        settings = self._settings(json.loads(values))
+        scene_file = self._text.scene_file(settings)
         shown = playback(run(scene_file.scene), scene_file.length_unit, SHOTS_PER_MOTION)
         stage = Stage(shown)
         for phase in stage.phases:
             stage.gaps_world(phase.last)  # from there a pull goes on
-        return _Ran(shown, stage)
+        return _Ran(shown, stage, set_in_text(self._text, settings) if settings else self.scene_text.text)
 
     def scene(self, values: object) -> SceneFile:
         """Return the scene with ``values``.
@@ -113,29 +114,13 @@ class WhatIf:
         """
         return self._text.scene_file(self._settings(values))
 
-    def saved(self, values: object) -> str:
-        """Return the text of the scene file with ``values``.
-
-        Raises
-        ------
-        SceneFileError, ValueError
-            As `answer`.
-        """
-        return edited_text(self._text, self._settings(values))
-
-    def problems(self, error: CageposeError | ValueError | TimeoutError) -> list[str]:
-        """Return what is wrong, in words for people who look at sliders and not at the file."""
-        if isinstance(error, SceneFileError):
-            return [str(Problem(problem.path, problem.message)) for problem in error.problems]
-        return [str(error)]
-
     def _settings(self, values: object) -> tuple[str, ...]:
         if not isinstance(values, dict):
             raise ValueError("the values are no mapping")
         keys = {START, *(control.key for control in self.controls)}
         settings = []
         for key, value in values.items():
-            if key not in keys:
+            if key not in keys and not (_is_number(value) and _is_number(self._at(key))):
                 raise ValueError(f"{key} cannot be changed here")
             if not _is_plain(value):
                 raise ValueError(f"{key} is no number, no word and no list of numbers")
@@ -143,9 +128,16 @@ class WhatIf:
                 continue
             given = {"coefficient": value, **self._friction_of} if key == "friction" else value
             settings.append(setting(key, given))
-        moves = any(key == START or key.startswith("cage.pose") for key in values)
+        moves = any(key == START or key.startswith(CAGE_POSE) for key in values)
         start = self._start(values) if moves else None
         return tuple(settings) if start is None else (*settings, setting("object.pose", start))
+
+    def _at(self, key: object) -> object:
+        """Return what stands at a key of the text; None: nothing does."""
+        try:
+            return value_at(self._text.yaml.data, resolved(self._text.yaml.data, parse_key_path(str(key))))
+        except ValueError:
+            return None
 
     def _start(self, values: dict[str, Any]) -> dict[str, list[float]] | None:
         """Return the start pose that is to the changed cage as the file's start is to the file's cage: moved alone, the
@@ -154,21 +146,32 @@ class WhatIf:
         """
         data = copy.deepcopy(self._text.yaml.data)
         for key, value in values.items():
-            if key.startswith("cage.pose"):
+            if key.startswith((CAGE_POSE, OBJECT_POSE)):
                 set_value(data, parse_key_path(key), value)
-        pose: dict[str, Any] = value_at(evaluated(data)[0], ("cage", "pose")) or {}
-        place, angles = (pose.get(key) or [0.0, 0.0, 0.0] for key in ("position", "euler_zyx_deg"))
-        dragged = values.get(START, [0.0, 0.0, 0.0])
-        if any(np.shape(numbers) != (3,) or not np.isfinite(numbers).all() for numbers in (place, angles, dragged)):
+        poses = [self._pose(value_at(evaluated(data)[0], (body, "pose")) or {}) for body in ("cage", "object")]
+        dragged, unit = values.get(START, [0.0, 0.0, 0.0]), self._scene_file.length_unit
+        if poses[0] is None or poses[1] is None or not _is_vector(dragged, 3):
             return None
-        unit = self._scene_file.length_unit
-        changed = Pose(to_metres(place, unit), euler_zyx=[math.radians(angle) for angle in angles])
-        scene = self._scene_file.scene
-        start = changed @ scene.cage.pose_world_cage.inverse() @ scene.object.pose_world_object
+        start = poses[0] @ self._scene_file.scene.cage.pose_world_cage.inverse() @ poses[1]
+        angles = np.round(np.degrees(start.euler_zyx), ANGLE_DECIMALS)
+        has_angles = angles.any() or value_at(data, ("object", "pose", "euler_zyx_deg")) is not None
         return {
             "position": np.round(from_metres(start.position_m, unit) + dragged, LENGTH_DECIMALS).tolist(),
-            "euler_zyx_deg": np.round(np.degrees(start.euler_zyx), ANGLE_DECIMALS).tolist(),
+            **({"euler_zyx_deg": angles.tolist()} if has_angles else {}),
         }
+
+    def _pose(self, pose: dict[str, Any]) -> Pose | None:
+        """Return the pose that a mapping of a scene file stands for; None: it is none."""
+        place, angles = (pose.get(key) or [0.0, 0.0, 0.0] for key in ("position", "euler_zyx_deg"))
+        turn = pose.get("quat_wxyz") or [1.0, 0.0, 0.0, 0.0]
+        if not (_is_vector(place, 3) and _is_vector(angles, 3) and _is_vector(turn, 4) and np.any(turn)):
+            return None
+        turned = Pose(quaternion_wxyz=turn) @ Pose(euler_zyx=[math.radians(angle) for angle in angles])
+        return Pose(to_metres(place, self._scene_file.length_unit)) @ turned  # one of both turns at most is given
+
+
+def _is_vector(numbers: Any, length: int) -> bool:
+    return np.shape(numbers) == (length,) and bool(np.isfinite(numbers).all())
 
 
 def _is_plain(value: object) -> bool:

@@ -1,0 +1,113 @@
+// The scene's file: it is written when somebody says so, and looked at again and again, as other programs may write it.
+
+import { post } from "./asking.js";
+import { download } from "./panel.js";
+import { button, element } from "./words.js";
+
+const LOOK_MS = 1000; // between two looks at the file
+const GONE = "The viewer's server does not answer; start cagepose view again.";
+
+export class OnDisk {
+  // `version` is that of the file with `text`; null: neither is known yet.
+  constructor(sheet, name, version, text) {
+    Object.assign(this, { sheet, name, version, text: version && text });
+    this.news = element("div", "", "news");
+    this.news.setAttribute("role", "alert");
+    this.news.hidden = true;
+  }
+
+  // Tells something about the file, with what can be done about it.
+  tell(words, ...buttons) {
+    this.news.replaceChildren(...(words ? [element("span", words), ...buttons] : []));
+    this.news.hidden = !words;
+  }
+
+  // Looks whether another program has written the file, again and again.
+  async look() {
+    try {
+      if (!document.hidden) await this.compare();
+    } catch (error) {
+      if (!(error instanceof TypeError)) throw error; // a lost connection is told where something is asked for
+    }
+    setTimeout(() => this.look(), LOOK_MS);
+  }
+
+  async compare() {
+    if (this.isSaving) return;
+    const { version: known, sheet: { beside } } = this;
+    const found = await (await post("file", { version: known, beside: beside.names })).json();
+    if (this.version !== known || this.isSaving) return; // saved meanwhile
+    if (this.sheet.beside === beside && found.stamp !== beside.stamp) { // of points or of a mesh
+      this.sheet.beside = { ...beside, stamp: found.stamp };
+      this.sheet.panel.ask();
+    }
+    if (found.problem) {
+      if (!this.isGone) this.tell(`${found.problem}. This text is here still: save it as another file.`);
+      this.isGone = true;
+      return;
+    }
+    if (this.isGone) this.tell("");
+    this.isGone = false;
+    if (found.text === undefined) return;
+    const isEdited = known === null || this.sheet.isUnsaved; // known from the start, but for values that the command has set
+    Object.assign(this, { version: found.version, text: found.text });
+    if (!isEdited) this.takeFile();
+    else if (found.text === this.sheet.text) this.tell("");
+    else if (known !== null) this.askWhich();
+    this.sheet.tellState();
+  }
+
+  takeFile() {
+    this.tell("");
+    this.sheet.begun = this.text;
+    this.sheet.replace(this.text);
+  }
+
+  askWhich() {
+    this.sheet.toggle(true);
+    this.tell(`${this.name} was changed on disk, and you have edits here that are not saved.`,
+      button("take the file's text", "yours can be had back by undo", () => this.takeFile()),
+      button("keep mine", "the file stays as it is until you save", () => this.tell("")));
+  }
+
+  async save() {
+    this.isSaving = true;
+    const text = this.sheet.text;
+    try {
+      const response = await post("save", { text, version: this.version });
+      const answer = await response.json();
+      if (response.ok) {
+        Object.assign(this, { version: answer.version, text });
+        this.sheet.begun = text;
+        this.tell("");
+      } else this.tell(answer.problems.join(" "));
+    } catch {
+      this.tell(GONE);
+    } finally {
+      this.isSaving = false;
+    }
+    this.sheet.tellState();
+  }
+
+  askName() {
+    const name = Object.assign(document.createElement("input"), { value: this.sheet.panel.fileName, size: 24 });
+    name.setAttribute("aria-label", "name of the new file");
+    const save = () => this.saveAs(name.value);
+    name.addEventListener("keydown", (event) => { if (event.key === "Enter") save(); });
+    this.tell("Beside the file, as", name, button("save", "a new file in the same folder", save),
+      button("download", "from the browser", () => { download(this.sheet.text, name.value); this.tell(""); }),
+      button("\u2715", "no file", () => this.tell("")));
+    name.focus();
+  }
+
+  async saveAs(name) {
+    try {
+      const response = await post("save-as", { text: this.sheet.text, name });
+      const answer = await response.json();
+      this.tell(response.ok ? `Saved as ${answer.name}; this page goes on with ${this.name}.` : answer.problems.join(" "),
+        ...(response.ok ? [] : [button("another name", "", () => this.askName())]), button("\u2715", "close", () => this.tell("")));
+    } catch {
+      this.tell(GONE);
+    }
+  }
+}

@@ -1,0 +1,208 @@
+"""A scene's file beside its page: what the page asks of its text, and of the file on disk."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from cagepose.errors import CageposeError, FileProblem, Problem, SceneFileError, printable
+from cagepose.files.files_named import files_named, stamp_of
+from cagepose.files.read import MAX_FILE_BYTES, SCENE_SUFFIXES, decoded
+from cagepose.files.scene_edit import edited
+from cagepose.files.scene_file import SceneText, read_scene_text, scene_text_of
+from cagepose.files.schema import scene_json_schema
+from cagepose.files.write import write_whole
+from cagepose.views.viewer.vary import runs_with
+from cagepose.views.viewer.what_if import WhatIf
+
+TEXTS_KEPT = 4
+Question = dict[str, Any]
+
+
+class Desk:
+    """Answers a page about one scene file. Each question holds the text that it is about, so that windows cannot
+    disturb each other.
+
+    Attributes
+    ----------
+    answers
+        By the path of a question, what answers it: plain data in and out. Each raises CageposeError, ValueError,
+        TimeoutError or OSError where there is no answer, see `refusal`.
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        set_values: tuple[str, ...] = (),
+        method: str | None = None,
+        *,
+        can_edit: bool = True,
+    ) -> None:
+        """``set_values`` and ``method`` change the text before anybody else does. Without ``can_edit`` there are
+        sliders alone: no text is taken, and no file is written.
+
+        Raises
+        ------
+        SceneFileError
+            The scene cannot be used, see `load_scene`.
+        """
+        self._path, self._source, self._can_edit = Path(path), os.fspath(path), can_edit
+        changes = set_values if method is None else (*set_values, f"method={method}")
+        self._version = _version(self._content()) if can_edit and not changes else None
+        self._scene_text_of = lru_cache(TEXTS_KEPT)(self._read)
+        self._what_if_of = lru_cache(TEXTS_KEPT)(self._made)
+        self._start = edited(read_scene_text(path), changes).text
+        self._what_if({})
+        self._writing = Lock()
+        self.answers: dict[str, Callable[[Question], dict[str, Any]]] = {"/run": self._run, "/pull": self._pull}
+        if can_edit:
+            self.answers |= {"/file": self._file, "/save": self._save, "/save-as": self._save_as, "/vary": self._vary}
+
+    def page_content(self) -> dict[str, Any]:
+        """Return what a page needs to ask."""
+        start = self._what_if({})
+        content = {
+            **self._told(start),
+            "fileName": f"{self._path.stem}-changed.yaml",
+            "text": _with_plain_ends(self._start),
+        }
+        if not self._can_edit:
+            return content
+        return {**content, "edit": {"name": self._path.name, "version": self._version, "schema": scene_json_schema()}}
+
+    def refusal(self, error: Exception) -> dict[str, Any]:
+        """Return what is wrong, for people who look at sliders or at the text; and where in the text."""
+        if isinstance(error, OSError) and error.strerror:
+            return {"problems": [printable(f"{self._path.name} cannot be written: {error.strerror}")]}
+        if not isinstance(error, SceneFileError):
+            return {"problems": [printable(str(error))]}
+        problems, mistakes = [], []
+        for problem in error.problems:
+            words = printable(str(Problem(problem.path, problem.message)))
+            problems.append(words)
+            if isinstance(problem, FileProblem) and problem.source == self._source and problem.line is not None:
+                mistakes.append({"line": problem.line, "column": problem.column, "words": words})
+        return {"problems": problems, "mistakes": mistakes}
+
+    def _run(self, asked: Question) -> dict[str, Any]:
+        what_if = self._what_if(asked)
+        found = what_if.answer(asked.get("values", {}))
+        found["text"] = _with_plain_ends(found["text"])
+        return {**found, **self._told(what_if)}
+
+    def _told(self, what_if: WhatIf) -> dict[str, Any]:
+        """What a page is told of a text beside its run: its controls, and the files that it names."""
+        names = _names(what_if.scene_text)
+        return {
+            "controls": [control.document() for control in what_if.controls],
+            "beside": {"names": names, "stamp": stamp_of(self._path.parent, names)},
+        }
+
+    def _pull(self, asked: Question) -> dict[str, Any]:
+        return self._what_if(asked).pulled(asked.get("values", {}), asked.get("pull"))
+
+    def _vary(self, asked: Question) -> dict[str, Any]:
+        return runs_with(self._what_if(asked).scene_text, asked.get("key"), asked.get("numbers"))
+
+    def _what_if(self, asked: Question) -> WhatIf:
+        is_start = asked.get("text") is None
+        if not (is_start or self._can_edit):
+            raise ValueError("the text cannot be changed from here; serve on this machine alone, without --host")
+        text = self._start if is_start else _text(asked)
+        return self._what_if_of(text, stamp_of(self._path.parent, _names(self._scene_text_of(text))))
+
+    def _read(self, text: str) -> SceneText:
+        return scene_text_of(text, self._source)
+
+    def _made(self, text: str, _stamp: str) -> WhatIf:
+        return WhatIf(self._scene_text_of(text))
+
+    def _file(self, asked: Question) -> dict[str, Any]:
+        """The file as it is now, its text only where the page knows another version; and whether the files that its
+        text names are other ones now.
+        """
+        names = asked.get("beside", [])
+        if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+            raise ValueError("what is beside the scene is no list of names")
+        return {**self._file_now(asked), "stamp": stamp_of(self._path.parent, names)}
+
+    def _file_now(self, asked: Question) -> dict[str, Any]:
+        try:
+            content = self._content()
+            if _version(content) == asked.get("version"):
+                return {"version": asked["version"]}
+            return {"version": _version(content), "text": _with_plain_ends(decoded(content, self._source))}
+        except FileNotFoundError:
+            return {"version": None, "problem": f"{self._path.name} is not there any more"}
+        except (OSError, CageposeError) as error:
+            return {"version": None, "problem": printable(f"{self._path.name} cannot be read: {error}")}
+
+    def _content(self) -> bytes:
+        with self._path.open("rb") as stream:
+            return stream.read(MAX_FILE_BYTES + 1)
+
+    def _save(self, asked: Question) -> dict[str, Any]:
+        text, name = _text(asked), self._path.name
+        with self._writing:
+            try:
+                before = self._content()
+            except FileNotFoundError:
+                raise ValueError(f"not saved: {name} is not there any more; save under another name") from None
+            if _version(before) != asked.get("version"):
+                raise ValueError(f"not saved: {name} was changed on disk since this page read it")
+            content = _as_bytes(text, has_returns=b"\r\n" in before)
+            mode = self._path.stat().st_mode
+            write_whole(self._path, content)
+            self._path.chmod(mode)
+        return {"version": _version(content)}
+
+    def _save_as(self, asked: Question) -> dict[str, Any]:
+        """Write a new file beside this one."""
+        text, name = _text(asked), asked.get("name")
+        if not isinstance(name, str) or not name.strip() or name != Path(name).name or "\\" in name or "\0" in name:
+            raise ValueError("not saved: give the name of a file, without a folder")
+        name = name.strip()
+        if name.startswith("."):
+            raise ValueError(f"not saved: {name} begins with a dot; give another name")
+        name = name if name.endswith(SCENE_SUFFIXES) else f"{name}.yaml"
+        try:
+            with self._path.with_name(name).open("xb") as stream:
+                stream.write(_as_bytes(text))
+        except FileExistsError:
+            raise ValueError(f"not saved: {name} is there already; give another name") from None
+        return {"name": name}
+
+
+def _names(scene_text: SceneText) -> list[str]:
+    return list(files_named(scene_text.yaml.data).values())
+
+
+def _text(asked: Question) -> str:
+    text = asked.get("text")
+    if not isinstance(text, str):
+        raise ValueError("the text of the scene is missing")
+    return text
+
+
+def _with_plain_ends(text: str) -> str:
+    """Return a text with line ends as an editor in a browser has them."""
+    return text.replace("\r\n", "\n")
+
+
+def _as_bytes(text: str, *, has_returns: bool = False) -> bytes:
+    try:
+        content = (text.replace("\n", "\r\n") if has_returns else text).encode()
+    except UnicodeEncodeError:
+        raise ValueError("the text holds half a character, which no file can hold; remove it") from None
+    if len(content) > MAX_FILE_BYTES:
+        raise ValueError(f"not saved: the text is larger than {MAX_FILE_BYTES // 1024**2} MiB")
+    return content
+
+
+def _version(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
