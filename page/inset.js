@@ -11,18 +11,25 @@ const LEAST_PART = 0.85; // of the height of the whole: a picture of more needs 
 export class Inset {
   constructor({ radius, look }, camera) {
     Object.assign(this, { camera, look });
-    this.eye = new Eye(radius, look, () => this.look.inset.map((share) => Math.round(share * camera.size()[0])));
+    this.eye = new Eye(radius, look, () => this.size);
   }
 
   // Where the picture shows a part of the whole alone, of which these are the corners, the inset shows that; else, and close
   // by, there is none.
   update(corners) {
-    const { eye, camera } = this;
+    const { eye, camera } = this, [wide] = camera.size();
+    this.size = this.look.inset.map((share) => Math.round(share * wide));
     const { azimuth, elevation, perspective } = camera;
     Object.assign(eye, { azimuth, elevation, perspective });
     eye.fitTo(() => corners, this.look.distance_of_eye * eye.radius);
     this.isShown = !camera.isClose() && this.part < LEAST_PART;
-    const [left, top] = this.corner, [width, height] = eye.size();
+    const told = [this.isShown, ...this.corner, ...this.size].join();
+    if (told !== this.told) this.layButton(); // laying out the page anew for each picture would cost more than the picture
+    this.told = told;
+  }
+
+  layButton() {
+    const [left, top] = this.corner, [width, height] = this.size;
     Object.assign($("whole").style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` });
     $("whole").hidden = !this.isShown;
   }
