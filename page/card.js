@@ -27,12 +27,13 @@ export class Card {
       ["normal", `(${normal.map((value) => +value.toPrecision(4)).join(", ")})`]];
     if (touch.force) {
       const { normal: along, across } = stage.parts(touch);
-      const noise = 1e-9 * data.greatestForce;
+      const { greatestForce, forceUnit } = data.phases[shot.phase], noise = 1e-9 * greatestForce;
       const used = touch.friction > 0 && along > noise ? `${Math.round(100 * across / (touch.friction * along))} % of ${+touch.friction.toPrecision(3)}` : "none";
-      lines.push(["force", `${digits(norm(touch.force), noise).toPrecision(4)} ${data.forceUnit}`], ["normal, friction", `${+digits(along, noise).toPrecision(4)}, ${+digits(across, noise).toPrecision(4)}`],
+      const unit = forceUnit === "N" ? "N" : "of the load";
+      lines.push(["force", `${along > noise ? touch.words : 0} ${unit}`], ["both together", `${digits(norm(touch.force), noise).toPrecision(4)} ${unit}`],
         ["friction used", used]);
     } else lines.push(["force", "computed at the end of a phase"]);
-    $("cardname").textContent = `${data.names[touch.point]} on ${touch.box}`;
+    $("cardname").textContent = stage.naming(touch, shot.touches);
     $("cardlines").replaceChildren(...lines.flatMap(([name, told]) => [element("dt", name), element("dd", told)]));
   }
 }

@@ -3,6 +3,8 @@
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, LineSegments } from "three";
 import { add, carried, composed, cross, dot, inverse, norm, rotated, samePose, sub, times, turnedTo, unit } from "./geometry.js";
 import { Camera } from "./camera.js";
+import { contentOf, loadsOutside, wholeOf } from "./content.js";
+import { Inset } from "./inset.js";
 import { Cap, WallCuts } from "./caps.js";
 import { color, Marks } from "./marks.js";
 import { Overlay } from "./overlay.js";
@@ -12,6 +14,7 @@ import { Body, Holes, Shape, Walls } from "./solids.js";
 import { World } from "./world.js";
 
 const RING = 16; // pixels about a contact that is looked at closely
+const RANK = { hand: 7, gap: 6, load: 5, force: 3, touch: 2, free: 0 }; // which names choose their places first; among forces, great ones
 const COILS = 7, COIL_POINTS = 8, STRAIGHT_ENDS = 0.15; // of a spring
 const CLOSE_UP = 0.008, TILT = 0.25; // half the height of a picture of one contact, and how far from along its plane
 
@@ -34,18 +37,20 @@ export class Drawing {
     this.isGlass = false;
     this.take(stage, exaggerations);
     this.allNames = stage.data.names.length <= this.sizes.few_names;
-    this.camera = new Camera(canvas, stage.data, { content: () => this.content(), under: (x, y) => this.under(x, y), covered, changed, clicked: (x, y) => clicked(this.touchAt(x, y), () => elementAt(this, x, y)),
+    this.camera = new Camera(canvas, stage.data, { content: () => contentOf(this), leastDistance: () => (this.frame ? this.sizes.distance_of_eye * this.stage.data.radius : 0),
+      under: (x, y) => this.under(x, y), covered, cutAway: () => this.section.normal, changed, clicked: (x, y) => clicked(this.touchAt(x, y), () => elementAt(this, x, y)),
       grabbed: (x, y) => {
         const handle = this.section.grab(x, y, this.camera, () => turned(this.section)), place = handle ? null : this.placeOnObject(x, y);
         return handle ?? (place && grabbed(place));
       } });
+    this.inset = new Inset(stage.data, this.camera);
     this.camera.fit(); // with loads and forces, whose arrows have a camera by now
   }
 
-  // Shows another run from now on, with the longest arrows for so much force.
-  take(stage, exaggerations, greatestForce = stage.data.greatestForce) {
+  // Shows another run from now on, with the longest arrow of each phase for so much force.
+  take(stage, exaggerations, greatestForces = stage.data.phases.map((phase) => phase.greatestForce)) {
     this.exaggerations = exaggerations; // of each phase; its owner changes them
-    this.greatestForce = greatestForce;
+    this.greatestForces = greatestForces;
     const { data } = stage;
     if (this.stage) { // where the origin of drawing coordinates was, and their unit
       const [before, size] = [this.stage.middle(), this.stage.data.unitsPerDrawing];
@@ -152,12 +157,14 @@ export class Drawing {
     if (!camera.isClose()) this.marks.ball(carried(pose, stage.data.center), this.sizes.ball - 1, this.paint.trace);
     this.marks.end();
     const scale = window.devicePixelRatio;
-    this.world.draw(camera, scale);
+    this.inset.update(wholeOf(this));
+    this.world.draw(camera, scale, this.inset);
     const pull = this.pulling(pose);
-    if (pull) this.labels.push([pull.tip, this.hand.text, true]);
+    if (pull) this.labels.push({ place: pull.tip, text: this.hand.text, rank: RANK.hand });
     const dimensions = this.gaps.dimensions(time, look, pose).filter(({ ends }) => !ends.every((end) => this.section.isCutAway(end)));
-    for (const { ends, text } of dimensions) this.labels.unshift([times(0.5, add(...ends)), text, true, this.sizes.paint.gap]);
-    this.overlay.write(this.labels, dimensions, camera, stage.data, scale);
+    for (const { ends, text } of dimensions) this.labels.push({ place: times(0.5, add(...ends)), text, rank: RANK.gap, color: this.sizes.paint.gap });
+    this.overlay.write(this.labels, dimensions, camera, stage.data, scale, this.inset.box);
+    if (this.inset.isShown) this.inset.draw(this.overlay, loadsOutside(this, shot, look, pose));
     if (pull) this.overlay.arrow(camera.project(pull.at), camera.project(pull.tip), this.sizes.paint.hand);
   }
 
@@ -176,28 +183,17 @@ export class Drawing {
     }
   }
 
-  // Brings all into view, as it is exaggerated now.
-  fit() {
+  // Brings what moves and touches into view, as it is exaggerated now, or all.
+  fit(isWhole = false) {
+    this.isWhole = isWhole;
     this.layGround();
     this.camera.fit();
   }
 
-  // All that a view is fitted to: corners at the start and each event's end, cage points, loads, forces at the end, and
-  // what lies near them of the cage's bodies.
-  content() {
-    const { stage } = this;
-    const { data } = stage;
-    const ends = [0, ...data.rows.map((row) => row.last)].map((shot) => this.shown(shot));
-    const { pose, look } = ends.at(-1);
-    const corners = ends.flatMap((end) => this.object.outer.map((corner) => carried(end.pose, corner)));
-    const needed = [...corners, ...data.points.map((_, index) => stage.point(index, look))];
-    const [low, high] = [Math.min, Math.max].map((pick) => [0, 1, 2].map((axis) => needed.reduce((best, place) => pick(best, place[axis]), needed[0][axis])));
-    this.cutOff = (place) => place.map((value, axis) => Math.max(low[axis] - data.reach, Math.min(high[axis] + data.reach, value)));
-    if (!this.camera) return needed;
-    const tails = data.phases.flatMap((phase) => phase.loads).flatMap((load) => this.loadEnds(load, look, pose));
-    const pressing = stage.shots.at(-1).touches.filter((touch) => touch.force).map((touch) => this.forceArrow(touch, pose, look)[0]);
-    const bodies = this.everyBody().flatMap(([body, at]) => body.outer.map((corner) => this.cutOff(carried(at, corner))));
-    return [...needed, ...tails, ...pressing, ...bodies];
+  // A view by its name, of what moves and touches.
+  home(name) {
+    this.isWhole = false;
+    this.camera.home(name);
   }
 
   // Where a load's arrow starts and ends: that of a force ends where it acts, that of a moment starts at the centre of
@@ -212,13 +208,26 @@ export class Drawing {
     return load.kind === "moment" ? [at, add(at, arrow)] : [sub(at, arrow), at];
   }
 
-  // Close by, an arrow ends where the ring about the contact begins.
-  forceArrow(touch, pose, look) {
+  // The longest arrow is that of the greatest force of the phase, and none is too short to be seen. Close by, an arrow ends
+  // where the ring about the contact begins.
+  forceArrow(touch, phase, pose, look) {
     const place = this.stage.place(touch, look);
     const pixel = this.camera.pixel(place);
-    const force = times(this.sizes.force * pixel / this.greatestForce, rotated(pose.q, touch.force));
+    const length = this.arrowPixels(touch, phase);
+    const force = times(length && length * pixel / norm(touch.force), rotated(pose.q, touch.force));
     const tip = this.camera.isClose() && norm(force) ? sub(place, times(RING * pixel / norm(force), force)) : place;
     return [sub(tip, force), tip];
+  }
+
+  // Of the greatest force of a phase.
+  share(touch, phase) {
+    return touch.force ? norm(touch.force) / this.greatestForces[phase] : 0;
+  }
+
+  // How long its arrow is, in pixels if it is seen from the side.
+  arrowPixels(touch, phase) {
+    const share = this.share(touch, phase);
+    return share > this.sizes.least_force ? Math.max(this.sizes.force * share, this.sizes.shortest_force) : 0;
   }
 
   drawPoints(shot, look, pose) {
@@ -227,7 +236,7 @@ export class Drawing {
     const touching = new Set(shot.touches.map((touch) => touch.point));
     const row = data.rows[shot.row];
     const isEnd = row && stage.shots[row.last] === shot;
-    const pressing = new Set(shot.touches.filter((touch) => touch.force && norm(touch.force) > this.sizes.least_force * data.greatestForce).map((touch) => touch.point));
+    const pressing = new Set(shot.touches.filter((touch) => this.share(touch, shot.phase) > this.sizes.least_force).map((touch) => touch.point));
     data.names.forEach((name, index) => {
       const kind = isEnd && row.hit.includes(name) ? "reached" : touching.has(index) ? "touching" : "free";
       const isPoint = index < data.points.length;
@@ -235,9 +244,10 @@ export class Drawing {
       const places = isPoint ? [point] : shot.touches.filter((touch) => touch.point === index).map((touch) => stage.place(touch, look));
       if (isPoint && this.pointLook === "pin") this.drawPin(point, this.outOf(index, shot, pose));
       if (kind !== "free" || this.pointLook === "ball") places.forEach((place) => this.mark(place, kind));
-      const counts = kind === "reached" || (kind === "touching" && (touching.size <= this.sizes.few_names || pressing.has(index)));
+      if (pressing.has(index)) return; // it is named at its arrows
+      const counts = kind === "reached" || (kind === "touching" && touching.size <= this.sizes.few_names);
       const named = places[0] ?? this.namedPlace(index - data.points.length, look);
-      if (counts || (this.allNames && !this.section.isCutAway(named))) this.labels.push([named, name, kind !== "free"]);
+      if (counts || (this.allNames && !this.section.isCutAway(named))) this.labels.push({ place: named, text: name, rank: kind === "free" ? RANK.free : RANK.touch });
     });
   }
 
@@ -273,8 +283,12 @@ export class Drawing {
       const place = this.stage.place(touch, look);
       const normal = times(this.sizes.normal * this.camera.pixel(place), rotated(pose.q, touch.normal));
       if (!this.camera.isClose()) this.marks.rod(place, add(place, normal), this.sizes.thin, this.paint.normal);
-      if (!touch.force || norm(touch.force) < this.sizes.least_shown * this.stage.data.greatestForce) continue;
-      this.marks.arrow(...this.forceArrow(touch, pose, look), this.sizes.rod, this.paint.force);
+      const share = this.share(touch, shot.phase), { names, phases } = this.stage.data;
+      if (share <= this.sizes.least_force) continue;
+      const [tail, tip] = this.forceArrow(touch, shot.phase, pose, look);
+      this.marks.arrow(tail, tip, this.sizes.rod, this.paint.force);
+      const force = touch.words.replace(/ friction$/, "") + (phases[shot.phase].forceUnit === "N" ? " N" : "");
+      this.labels.push({ place: tail, text: names[touch.point], force, rank: RANK.force + share });
     }
   }
 
@@ -285,7 +299,7 @@ export class Drawing {
       else this.marks.arrow(start, end, 1.3 * this.sizes.rod, this.paint.load);
       // A moment's arrow has two heads.
       if (load.kind === "moment") this.marks.arrow(start, add(start, times(this.sizes.second_head, sub(end, start))), 1.3 * this.sizes.rod, this.paint.load);
-      this.labels.push([load.kind === "spring" ? end : start, load.name, true]);
+      this.labels.push({ place: load.kind === "spring" ? end : start, text: load.name, rank: RANK.load });
     }
   }
 

@@ -31,11 +31,11 @@ export class ForceCurve {
     const { drive } = this;
     if (!drive) return;
     const { pen, width, height } = blankChart(this.canvas);
-    const noise = NOISE * data.greatestForce;
+    const { greatestForce } = data.phases[phase], noise = NOISE * greatestForce;
     const curve = drive.curve.map(([share, along]) => [share, Math.abs(along) < noise ? 0 : along]);
     const forces = [0, ...curve.map(([, along]) => along)];
     const [least, most] = [Math.min(...forces), Math.max(...forces)];
-    const range = most > least ? most - least : data.greatestForce;
+    const range = most > least ? most - least : greatestForce;
     const [low, high] = [least - 0.05 * range, least + 1.08 * range];
     const x = (share) => LEFT + (width - LEFT - RIGHT) * share;
     const y = (along) => ABOVE + (height - ABOVE - BELOW) * (high - along) / (high - low);

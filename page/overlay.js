@@ -1,9 +1,9 @@
 // What is written over the picture: names, axes and a scale.
 
 import { add, times } from "./geometry.js";
-import { laidOut } from "./labels.js";
+import { laidOut, leader } from "./labels.js";
 
-const PAPER = "#f6f7f9", GAP = "#7b2d8e", HEIGHT = 13, HEAD = 14;
+const PAPER = "#f6f7f9", LEADER = "#8a8a8a", GAP = "#7b2d8e", HEIGHT = 13, HEAD = 14;
 const TIP = [8, 3]; // of a dimension's arrow: length, and half its width
 const ROOM = 24, OUTSIDE = 16; // pixels: a shorter dimension has its arrows outside, so long
 
@@ -13,9 +13,10 @@ export class Overlay {
     this.written = [];
   }
 
-  // `labels` are places, names, and whether they matter: those that do choose their places first. `dimensions` have two
-  // ends, and the normal that leads from the one to the other.
-  write(labels, dimensions, camera, data, scale) {
+  // `labels` are places, names and ranks, those of higher rank choose their places first; a force is written behind its
+  // name; one of rank 0 is not moved away to where there is room. `dimensions` have two ends, and the normal that leads from
+  // the one to the other. `taken` are boxes that no name may cover.
+  write(labels, dimensions, camera, data, scale, taken) {
     const [width, height] = camera.size();
     if (this.canvas.width !== Math.round(width * scale)) this.canvas.width = Math.round(width * scale); // setting it anew, even to the same, costs a frame
     if (this.canvas.height !== Math.round(height * scale)) this.canvas.height = Math.round(height * scale);
@@ -26,14 +27,19 @@ export class Overlay {
     for (const { ends: [from, to], normal } of dimensions) {
       if (camera.isAhead(from) && camera.isAhead(to)) this.dimension(...[from, to, add(to, times(camera.pixel(to), normal))].map((place) => camera.project(place)));
     }
-    const seen = labels.filter(([place]) => camera.isAhead(place)).map(([place, text, isLoud, color]) => ({ place: camera.project(place), text, isLoud, color, size: [pen.measureText(text).width, HEIGHT] }))
-      .filter(({ place: [x, y] }) => x > -20 && y > -20 && x < width + 20 && y < height + 20).sort((one, other) => other.isLoud - one.isLoud);
-    const corners = laidOut(seen, [width, height]);
+    const seen = labels.filter(({ place }) => camera.isAhead(place)).map((label) => {
+      const words = [label.text, label.force].filter(Boolean).join("  ");
+      return { ...label, words, place: camera.project(label.place), moves: label.rank > 0, size: [pen.measureText(words).width, HEIGHT] };
+    }).filter(({ place: [x, y] }) => x > 0 && y > 0 && x < width && y < height).sort((one, other) => other.rank - one.rank);
+    const corners = laidOut(seen, [width, height], taken);
     this.written = [];
-    seen.forEach(({ text, isLoud, size, color }, which) => {
-      if (!corners[which]) return;
-      this.text(text, corners[which][0], corners[which][1] + 0.85 * HEIGHT, color ?? (isLoud ? "#000" : "#666"));
-      this.written.push({ text, corner: corners[which], size });
+    seen.forEach(({ text, force, words, place, rank, size, color }, which) => {
+      const corner = corners[which];
+      if (!corner) return;
+      const end = leader(place, corner, size);
+      if (end) this.line(place, end, LEADER, 1);
+      this.text(words, corner[0], corner[1] + 0.85 * HEIGHT, color ?? (rank ? "#000" : "#666"));
+      this.written.push({ text, force, place, corner, size, leads: Boolean(end) });
     });
     this.drawAxes(camera, height);
     this.drawScale(camera, data, width, height);

@@ -3,6 +3,7 @@
 import { add, carried, norm, sub, times } from "./geometry.js";
 import { Drawing } from "./drawing.js";
 import { ForceCurve, NOISE } from "./force.js";
+import { contentOf } from "./content.js";
 import { Asker } from "./asking.js";
 import { Card } from "./card.js";
 import { Gaps } from "./gaps.js";
@@ -129,8 +130,8 @@ function showLed(answer, from) {
   const before = exaggerations[stage.data.led?.phase === from ? from + 1 : from];
   const { proposed } = answer.phases.at(-1);
   const kept = before > LONGEST * proposed ? proposed : before;
-  const longest = Math.max(stage.data.led ? drawing?.greatestForce ?? 0 : data.greatestForce, answer.greatestForce / LONGEST);
-  showRun(answer, [...exaggerations.slice(0, from + 1), kept], longest);
+  const forces = answer.phases.map((phase) => phase.greatestForce), now = stage.data.led ? drawing?.greatestForces.at(-1) ?? 0 : data.phases[from].greatestForce;
+  showRun(answer, [...exaggerations.slice(0, from + 1), kept], [...forces.slice(0, -1), Math.max(now, forces.at(-1) / LONGEST)]);
   if (!answer.led.rests) seek(onItsWay(answer.led.from));
   showAhead();
 }
@@ -143,13 +144,13 @@ function onItsWay(place) {
   return time;
 }
 
-function showRun(answer, itsExaggerations, greatestForce = answer.greatestForce) {
+function showRun(answer, itsExaggerations, greatestForces) {
   data = answer;
   stage = new Stage(data);
   end = stage.shots.length - 1;
   exaggerations = itsExaggerations;
   gaps.take(data, stage);
-  drawing?.take(stage, exaggerations, greatestForce);
+  drawing?.take(stage, exaggerations, greatestForces);
   card.pick(null);
   player.answers += 1;
   fill();
@@ -208,8 +209,14 @@ function tellSection(section) {
 function fill() {
   plot.fit(data);
   $("name").textContent = data.name;
-  $("verdict").textContent = data.verdict;
-  $("verdict").className = data.verdictKind;
+  $("phases").replaceChildren(...data.phases.map(({ name, verdict, verdictKind, isUnstable, last }, index) => {
+    const isLast = index === data.phases.length - 1; // its verdict is that of the run
+    const button = element("button", `${name} `), word = element("span", verdict, isLast ? data.verdictKind : verdictKind);
+    if (isLast) word.id = "verdict";
+    button.append(word, isUnstable ? ", unstable" : "");
+    button.addEventListener("click", () => { pause(); seek(last); });
+    return button;
+  }));
   $("contradicted").textContent = data.contradicted;
   $("contradicted").className = data.verdictKind;
   $("method").textContent = `${data.method}, solved in ${data.solve}`;
@@ -224,8 +231,6 @@ function fill() {
     line.addEventListener("click", () => { pause(); seek(row.last); });
     $("events").tBodies[0].append(line);
   });
-  $("forceunit").textContent = data.forceUnit;
-  $("notes").replaceChildren(...data.notes.map((note) => element("p", note)));
   $("time").max = end;
 }
 
@@ -235,13 +240,6 @@ function namesCell(names) {
   const cell = element("td", names.length > 9 ? `${names.slice(0, 6).join(between)} and ${names.length - 6} more` : names.join(between));
   if (names.length > 9) cell.title = names.join(between);
   return cell;
-}
-
-// Scrolls the list of events, and nothing around it, to a line.
-function reveal(line) {
-  const list = line.closest(".events");
-  const [first, last] = [line.offsetTop - line.offsetHeight, line.offsetTop + line.offsetHeight - list.clientHeight];
-  list.scrollTop = Math.max(last, Math.min(first, list.scrollTop));
 }
 
 function show() {
@@ -280,10 +278,12 @@ function tell() {
   $("exaggeration").disabled = from >= last && from > 0;
   $("exaggeration").title = $("exaggeration").disabled ? "this phase ends with a long motion, which is shown at true scale" : "of the phase on screen";
   const factor = digits(Math.round(look.factor), 0);
-  $("badge").textContent = factor === 1 ? "true scale" : `play and gaps exaggerated \u00D7${factor}`;
-  $("badge").className = factor === 1 ? "" : "exaggerated";
+  const isMagnified = stage.isMagnified(time, look);
+  $("badge").textContent = isMagnified ? `play and gaps exaggerated \u00D7${factor}` : "true scale";
+  $("badge").className = isMagnified ? "exaggerated" : "";
+  [...$("phases").children].forEach((button, index) => (index === phase() ? button.setAttribute("aria-current", "step") : button.removeAttribute("aria-current")));
+  $("notes").replaceChildren(...notesNow().map((note) => element("p", note)));
   [...$("events").tBodies[0].rows].forEach((line, index) => {
-    if (index === shot.row && !line.classList.contains("now")) reveal(line);
     line.classList.toggle("now", index === shot.row);
   });
   $("pose").replaceChildren(
@@ -296,12 +296,18 @@ function tell() {
   player.drawnExaggeration = k;
 }
 
+// Why the phase on screen ended as it did, and all warnings but for one that says the same.
+function notesNow() {
+  const { name, note } = data.phases[phase()], warning = `Warning: ${name}: `;
+  return [note, ...data.notes.filter((other) => !(other.startsWith(warning) && note.endsWith(other.slice(warning.length))))];
+}
+
 // The force of the drive of the phase on screen; a phase without one has none.
 function tellDrive(time) {
   const { drive } = data.phases[phase()], now = stage.drive(time);
   $("drive").hidden = !drive;
   if (!drive) return;
-  const along = now?.along == null ? "not known" : `${+digits(now.along, NOISE * data.greatestForce).toPrecision(4)} ${drive.unit}`;
+  const along = now?.along == null ? "not known" : `${+digits(now.along, NOISE * data.phases[phase()].greatestForce).toPrecision(4)} ${drive.unit}`;
   $("driven").textContent = now ? `${(100 * now.share).toFixed(1)} %: ${along}` : "not driven yet";
   force.draw(data, phase(), now && now.along !== null ? now : null);
 }
@@ -321,19 +327,22 @@ function wideRow(text) {
 }
 
 function forceRows(shot) {
+  const { greatestForce, forceUnit } = data.phases[shot.phase];
+  $("forceunit").textContent = "";
   if (!shot.touches.some((touch) => touch.force)) return [wideRow(whyNoForces(shot))];
-  const loaded = shot.touches.filter((touch) => norm(touch.force) > data.look.least_force * data.greatestForce);
+  const loaded = shot.touches.filter((touch) => norm(touch.force) > data.look.least_force * greatestForce);
+  const unit = forceUnit === "N" ? "N" : "parts of the load";
+  $("forceunit").textContent = loaded.some((touch) => touch.words.includes("+")) ? `${unit}: normal + friction; bars and arrows: both together` : unit;
   const idle = shot.touches.length - loaded.length;
   const lines = loaded.map((touch) => {
     const size = norm(touch.force);
     const line = element("tr", "");
     const bar = element("span", "", "bar");
-    bar.style.width = `${100 * size / data.greatestForce}%`;
+    bar.style.width = `${100 * size / greatestForce}%`;
     const cell = element("td", "");
-    cell.style.width = "50%";
     cell.append(bar);
     line.addEventListener("click", () => { card.pick(touch); refresh(); });
-    line.append(element("td", `${data.names[touch.point]} on ${touch.box}`), element("td", size.toPrecision(4)), cell);
+    line.append(element("td", stage.naming(touch, loaded)), element("td", touch.words), cell);
     return line;
   });
   return idle ? [...lines, wideRow(`${idle} more without a force`)] : lines;
@@ -350,6 +359,7 @@ $("exaggeration").addEventListener("input", () => {
   chosen.set(phase(), data.exaggerations[$("exaggeration").value]);
   exaggerate(data.exaggerations[$("exaggeration").value]);
 });
+$("whole").addEventListener("click", () => drawing.fit(true));
 $("names").addEventListener("change", () => { drawing.allNames = $("names").checked; refresh(); });
 $("glass").addEventListener("change", () => { drawing.glaze($("glass").checked); refresh(); });
 $("perspective").addEventListener("change", () => { drawing.camera.perspective = $("perspective").checked; drawing.fit(); });
@@ -357,7 +367,7 @@ $("points").addEventListener("change", () => { drawing.pointLook = $("points").v
 $("cut").addEventListener("change", () => { drawing.cut($("cut").value || null); tellSection(drawing.section); refresh(); });
 $("cutplace").addEventListener("input", () => { drawing.section.move(Number($("cutplace").value)); refresh(); });
 for (const way of ["cutturn", "cuttilt"]) $(way).addEventListener("input", () => { drawing.section.face(Number($("cutturn").value), Number($("cuttilt").value)); refresh(); });
-document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => drawing?.camera.home(button.dataset.view)));
+document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => drawing?.home(button.dataset.view)));
 document.addEventListener("keydown", (event) => {
   if (event.target.matches("input, button, select, summary") || event.target.isContentEditable) return;
   const act = { " ": toggle, ArrowLeft: () => step(-1), ArrowRight: () => step(1), Home: () => seek(0), End: () => seek(end) }[event.key];
@@ -375,15 +385,17 @@ window.cagepose = {
       touches: stage.shot(player.time).touches.map((touch) => stage.place(touch, look)),
       bodies: data.bodies.map((_, index) => stage.bodyPose(index, look).p), drive: stage.drive(player.time),
       camera: camera && { target: camera.target, half: camera.half, back: camera.axes()[2], perspective: camera.perspective },
+      frame: drawing?.frame, arrows: drawing ? stage.shot(player.time).touches.map((touch) => drawing.arrowPixels(touch, stage.shot(player.time).phase)) : [],
+      inset: drawing?.inset.isShown ? { corner: drawing.inset.corner, size: drawing.inset.eye.size(), part: drawing.inset.part } : null,
       isBusy: asker.isBusy, answerMs: asker.tookMs, hand: hand?.led && { ...hand.led, force: hand.force, shownForce: hand.shownForce, at: hand.at },
       picked: card.touch && data.names[card.touch.point], hasShadows: drawing?.world.hasShadows, built: drawing?.built,
       gaps: gaps.at(player.time), dimensions: drawing ? gaps.dimensions(player.time, look, stage.pose(stage.truePose(player.time), look)) : [],
       section: drawing?.section.plane && { ...drawing.section.plane, point: drawing.section.point, areas: drawing.caps.map((cap) => cap.area), handle: drawing.section.handle(camera) } };
   },
-  fitted: () => drawing.content().map((place) => drawing.camera.project(place)), // apart: 12,000 places in a crowded scene
+  fitted: () => contentOf(drawing).map((place) => drawing.camera.project(place)), // apart: 12,000 places in a crowded scene
   isOnObject: (x, y) => Boolean(drawing.placeOnObject(x, y)),
   project: (place) => drawing.camera.project(place),
-  look: (place, back, half) => drawing.camera.lookAt(place, back, half),
+  look: (place, back, half, distance) => drawing.camera.lookAt(place, back, half, distance),
 };
 
 fill();

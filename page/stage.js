@@ -1,13 +1,16 @@
 // What is shown of the data at a time, each phase exaggerated by a number of its own. The same formulas as in stage.py.
 
+import { digits } from "./words.js";
 import { add, between, carried, composed, conjugate, dot, fromTurnVector, inverse, norm, product, rotated, sub, times, turnVector } from "./geometry.js";
+
+const LEAST_SEEN = 1e-6; // drawing units, radians: less is not seen
 
 export class Stage {
   constructor(data) {
     this.data = data;
     const cages = data.cages.map((cage) => cage.map(({ position, quaternion }) => ({ p: position, q: quaternion })));
-    const touches = data.touches.map(({ points, boxes, normals, forces, places, friction }) =>
-      points.map((point, i) => ({ point, box: boxes[i], normal: normals[i], force: forces && forces[i],
+    const touches = data.touches.map(({ points, boxes, normals, forces, words, places, friction }) =>
+      points.map((point, i) => ({ point, box: boxes[i], normal: normals[i], force: forces && forces[i], words: words && words[i],
         friction: friction && friction[i], place: places ? places[i] : data.points[point] })));
     const moves = cages.length > 1;
     this.shots = data.shots.map((s) => ({ row: s.row, phase: s.phase, pose: { p: s.position, q: s.quaternion }, cage: cages[s.cage],
@@ -78,6 +81,15 @@ export class Stage {
     return { reference: phase.reference, factor: passing(before.factor, exaggerations[index], phase.start, phase.last) };
   }
 
+  // Whether anything of a look is larger than it is: where nothing has moved and all touches, nothing is.
+  isMagnified(time, look) {
+    if (look.factor === 1) return false;
+    const { data } = this, pose = this.pose(look.truth, look);
+    const ways = [sub(carried(pose, data.center), carried(look.truth, data.center)), turnVector(look.truth.q, pose.q), ...data.elementBodies.map((_, element) => this.shift(element, look))];
+    const plays = [...data.holes, ...data.cageHoles].map(({ play }) => (look.factor - 1) * play);
+    return ways.some((way) => norm(way) > LEAST_SEEN) || plays.some((play) => play > LEAST_SEEN);
+  }
+
   pose(pose, { reference, factor }) {
     if (factor === 1) return pose;
     const start = this.shots[reference].pose;
@@ -135,6 +147,14 @@ export class Stage {
     const before = this.data.rows[row].first - 1;
     const pose = this.pose(this.shots[before].pose, this.look(before, exaggerations));
     return { through: carried(pose, motion.through), direction: rotated(pose.q, motion.direction), turns: motion.turns };
+  }
+
+  // A contact by its names, and by its place if another one of some has the same.
+  naming(touch, touches) {
+    const { names, unitsPerDrawing } = this.data, name = `${names[touch.point]} on ${touch.box}`;
+    if (touches.filter(({ point, box }) => point === touch.point && box === touch.box).length < 2) return name;
+    const place = add(this.middle(), times(unitsPerDrawing, touch.place));
+    return `${name} at (${place.map((value) => digits(+value.toPrecision(4), 1e-9 * unitsPerDrawing)).join(", ")})`;
   }
 
   // Along the normal and across it, of the force of a touch.

@@ -74,7 +74,8 @@ export class World {
     this.ground = height;
   }
 
-  draw(camera, overlayScale) {
+  // As a camera sees it, and in a corner as an inset does, if that is shown.
+  draw(camera, overlayScale, inset) {
     const [width, height] = camera.size();
     if (this.width !== width || this.height !== height || this.scale !== overlayScale) { // each of both makes the picture's memory anew
       this.renderer.setPixelRatio(overlayScale);
@@ -94,10 +95,29 @@ export class World {
     this.sun.position.set(...this.data.look.sun_from.map((value, i) => origin[i] + 3 * this.data.radius * value));
     const [right, up, back] = camera.axes(), lamp = this.data.look.lamp_from;
     this.lamp.position.set(...[0, 1, 2].map((i) => lamp[0] * right[i] + lamp[1] * up[i] + lamp[2] * back[i]));
-    const depth = isClose ? camera.reach() : 3 * this.data.radius;
-    const nearest = camera.distance() - 0.3 * depth;
+    this.layFog(camera);
+    this.renderer.render(this.scene, camera.three());
+    if (inset.isShown) this.drawInset(inset, camera);
+  }
+
+  layFog(eye) {
+    const isClose = eye.isClose(), depth = isClose ? eye.reach() : 3 * this.data.radius;
+    const nearest = eye.distance() - 0.3 * depth;
     this.scene.fog.near = nearest;
     this.scene.fog.far = nearest + (isClose ? 1.5 : 3) * depth;
-    this.renderer.render(this.scene, camera.three());
+  }
+
+  drawInset({ eye, corner: [left, top] }, camera) {
+    const { renderer } = this, [width, height] = eye.size(), below = this.height - top - height;
+    this.grid.visible = false;
+    renderer.shadowMap.autoUpdate = false;
+    this.layFog(eye);
+    renderer.setScissorTest(true);
+    renderer.setScissor(left, below, width, height);
+    renderer.setViewport(left, below, width, height);
+    renderer.render(this.scene, eye.three(camera.target));
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, this.width, this.height);
+    renderer.shadowMap.autoUpdate = true;
   }
 }

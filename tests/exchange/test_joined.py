@@ -86,7 +86,7 @@ def test_the_command_joins_files_at_places(tmp_path, monkeypatch, capsys):
     assert ended.verdict in ("rests", "may rest")
     assert ended.pose.position_m[2] == pytest.approx(0.0098, abs=1e-9)
     page = Path("page.html").read_text()
-    assert page.count("data:image/png;base64,") == 4
+    assert page.count("data:image/png;base64,") == 8
     assert "<td>pin 2</td>" in page
     Path("mine.html").write_text("<p>mine")
     assert main([*command, "--report", "mine.html"]) == 2

@@ -78,6 +78,6 @@ def test_the_page_shows_bodies_as_mujoco_has_them_and_as_they_are_here(tmp_path,
     out, page = capsys.readouterr().out, Path("page.html").read_text()
     assert "tip    object  1 capsule, 1 cylinder" in out
     assert "MuJoCo says of the object: 0.0954" in out
-    assert page.count("data:image/png;base64,") == 4
+    assert page.count("data:image/png;base64,") == 8
     for said in ("<td>frame</td>", "MuJoCo says of the object", "is a plane; here, a box"):
         assert said in page

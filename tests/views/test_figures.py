@@ -114,7 +114,7 @@ def test_each_event_has_its_snapshot_and_the_weight_its_view(sample):
 def test_a_snapshot_shows_what_is_near_the_cage_and_where_the_motion_began(rail):
     """The cage of 0.2 m fills the picture of a rail of 1.2 m, and nothing of it is cut."""
     stage = Stage(playback(rail, "mm", 2))
-    maker = PictureMaker(stage, size=PICTURE, seen=(0, 1), is_near=True)
+    maker = PictureMaker(stage, size=PICTURE, seen=(0, 1))
     places = maker.seen_at(stage.place(stage.points(stage.look(1, stage.proposed))))
     assert ((places > 0.0) & (places < PICTURE)).all()
     assert np.ptp(places[:, 0]) > 0.4 * PICTURE[0]

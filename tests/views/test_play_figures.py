@@ -80,7 +80,7 @@ def test_the_pose_of_each_end_is_drawn_with_the_points_that_limit_it() -> None:
     limits = tuple(clearance.point for clearance in end.clearances)
     assert end.pose_world_object is not None
     film = single_motion(found.scene, end.pose_world_object, limits, "mm")
-    maker = PictureMaker(Stage(film), size=PICTURE, is_near=True)
+    maker = PictureMaker(Stage(film), size=PICTURE)
     drawn = np.asarray(maker.picture(film.shots[-1]))
     assert np.array_equal(figure.axes[9].images[0].get_array(), drawn)
     assert {label.text for label in maker.labels if label.ink == LOUD_INK} == set(limits)
@@ -95,7 +95,7 @@ def test_what_sticks_out_of_its_cage_is_not_cut() -> None:
     scene = Scene(bar, Cage(points), [Load("weight", gravity=(0, 0, -1))])
     end = play(scene).freedoms["y"].high
     film = single_motion(scene, end.pose_world_object, (), "mm")
-    maker = PictureMaker(Stage(film), size=PICTURE, is_near=True)
+    maker = PictureMaker(Stage(film), size=PICTURE)
     maker.picture(film.shots[-1])
     shown = maker.stage.pose(film.shots[-1].pose_world_object, maker.now)
     pixels = maker.seen_at(maker.stage.place(shown.transform(outer_points(bar))))

@@ -10,8 +10,7 @@ from rich.text import Text
 
 from cagepose.cli.console import fits
 from cagepose.cli.styles import plain_table
-from cagepose.cli.tolerances import SIDEWAYS_OF_NORMAL
-from cagepose.files.words import LengthWords, names_of
+from cagepose.files.words import LengthWords, force_words, names_of
 from cagepose.model.wording import number_of
 from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.run import Contact, PhaseRun, Run
@@ -101,9 +100,5 @@ def _bears(contact: Contact) -> bool:
 
 
 def _force(contact: Contact) -> str:
-    """``72.28 + 9.757 friction``: along the normal, and tangential."""
-    if contact.force_normal_n is None or not _bears(contact):
-        return NO_FORCE
     tangential = 0.0 if contact.force_tangential_n is None else math.hypot(*contact.force_tangential_n)
-    beside = f" + {tangential:.4g} friction" if tangential > SIDEWAYS_OF_NORMAL * contact.force_normal_n else ""
-    return f"{contact.force_normal_n:.4g}{beside}"
+    return force_words(contact.force_normal_n or 0.0, tangential)

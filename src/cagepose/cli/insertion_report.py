@@ -52,7 +52,10 @@ def insertion_lines(insertion: Insertion, words: LengthWords) -> list[tuple[str,
         where = words.depth(run.scene.loads[number], insertion.least_jam_share)
         lines.append(("", f"the first place to jam, as friction grows, is at {where}"))
     if insertion.cannot_jam:
-        lines.append(("", f"it cannot jam with these contacts along this path, at a friction of {friction} or less"))
+        within = (
+            f"at a friction of {friction} or less" if insertion.friction else "as long as nothing rubs (friction 0)"
+        )
+        lines.append(("", f"it cannot jam with these contacts along this path, {within}"))
     return lines
 
 

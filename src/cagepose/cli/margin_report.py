@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections import Counter
 
-from cagepose.cli.tolerances import LEAST_PRESS, SIDEWAYS_OF_NORMAL
+from cagepose.cli.tolerances import LEAST_PRESS
 from cagepose.files.units import from_metres
-from cagepose.files.words import LengthWords
+from cagepose.files.words import SIDEWAYS_OF_NORMAL, LengthWords
 from cagepose.model.checks import FloatArray
 from cagepose.model.wording import components, short
 from cagepose.runs.run import Run

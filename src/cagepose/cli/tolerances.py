@@ -1,7 +1,5 @@
 """The tolerances of what the commands print."""
 
-SIDEWAYS_OF_NORMAL = 1e-9
-"""Fraction of a normal force. A smaller force across it is rounding."""
 END_AT_START = 1e-12
 """Metres or radians. An end that is nearer is at the start but for rounding."""
 LEAST_PRESS = 1e-9

@@ -13,6 +13,9 @@ from cagepose.runs.changes import Seen
 from cagepose.runs.drives import way_of
 from cagepose.runs.run import Motion
 
+SIDEWAYS_OF_NORMAL = 1e-9
+"""Fraction of a normal force. A smaller force across it is rounding."""
+
 
 class LengthWords:
     """Writes the lengths of one scene; what is rounding beside its size is 0."""
@@ -53,6 +56,18 @@ class LengthWords:
             (legs,) = load.drive.values()
             return self.way(legs, share)
         return f"{short(100.0 * share, 4, 1e-10)} %"
+
+
+def force_words(normal: float, tangential: float) -> str:
+    """Return a contact force, along the normal and across it; ``0`` of one that bears nothing.
+
+    >>> force_words(72.28, 9.757), force_words(0.3431, 1e-15)
+    ('72.28 + 9.757 friction', '0.3431')
+    """
+    if not normal:
+        return "0"
+    beside = f" + {tangential:.4g} friction" if tangential > SIDEWAYS_OF_NORMAL * normal else ""
+    return f"{normal:.4g}{beside}"
 
 
 def line_of(motion: Motion | Seen) -> str:

@@ -135,7 +135,7 @@ def _snapshot(stage: Stage, row: int) -> FloatArray:
     """Return the pixels of one event's end, with the outline of where its motion began."""
     shown = stage.shown
     before, after = (0, 0) if row < 0 else (shown.rows[row].first_shot - 1, shown.rows[row].last_shot)
-    maker = PictureMaker(stage, size=PICTURE, seen=(before, after), is_near=True)
+    maker = PictureMaker(stage, size=PICTURE, seen=(before, after))
     return np.asarray(maker.picture(shown.shots[after], is_captioned=False))
 
 
@@ -215,7 +215,8 @@ def _write_names(panel: Axes, places: Mapping[str, FloatArray]) -> None:
         for name, (x, y) in places.items()
     ]
     extents = [text.get_window_extent() for text in texts]
-    corners = laid_out(pixels, [(extent.width, extent.height) for extent in extents], (area.width, area.height))
+    sizes = [(extent.width, extent.height) for extent in extents]
+    corners = laid_out(pixels, sizes, (area.width, area.height), [False] * len(sizes))
     for text, extent, (x, y), corner in zip(texts, extents, pixels, corners, strict=True):
         text.set_visible(corner is not None)
         left, top = corner or (0.0, 0.0)

@@ -45,7 +45,7 @@ def _picture(play: Play, end: PlayEnd, length_unit: LengthUnit) -> np.ndarray:
     touching = tuple(clearance.point for clearance in end.clearances)
     pose = end.pose_world_object or play.scene.object.pose_world_object
     film = single_motion(play.scene, pose, touching, length_unit)
-    return np.asarray(PictureMaker(Stage(film), size=PICTURE, is_near=True).picture(film.shots[-1]))
+    return np.asarray(PictureMaker(Stage(film), size=PICTURE).picture(film.shots[-1]))
 
 
 def _amount(end: PlayEnd, bound: str, name: str, length_unit: LengthUnit) -> str:

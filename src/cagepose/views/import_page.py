@@ -36,7 +36,7 @@ def write_import_page(found: Import, path: str | os.PathLike[str]) -> None:
             rounding=f"{ROUNDING_OF_MEASURES:g}",
             weight=weight_words(found.weight) if found.weight else "",
             notes=found.notes,
-            pictures=[(body, *_embedded(pictures_of(parts))) for body, parts in bodies if parts],
+            pictures=[(body, [_embedded(pair) for pair in pictures_of(parts)]) for body, parts in bodies if parts],
         )
     )
     write_whole(path, text.encode())

@@ -1,7 +1,8 @@
-"""Solids of a file as it has them, and the shapes that they became, from the same place: `pictures_of`."""
+"""Solids of a file as it has them, and the shapes that they became, from the same places: `pictures_of`."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -14,7 +15,7 @@ from cagepose.files.meshes.manifolds import Triangles
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 from cagepose.views.solids import CREASE
-from cagepose.views.viewer.eye import Eye
+from cagepose.views.viewer.eye import AZIMUTH, ELEVATION, Eye
 from cagepose.views.viewer.look import PAINT, ink, lit
 from cagepose.views.viewer.paint_bodies import BodyPainter, ShownHole
 from cagepose.views.viewer.picture import FINER_PIXELS
@@ -22,6 +23,8 @@ from cagepose.views.viewer.raster import Raster
 
 SIZE = (600, 450)
 """Pixels across and down."""
+SIDES = ((AZIMUTH, ELEVATION), (AZIMUTH + math.pi, -ELEVATION))
+"""From where a body is seen, radians: from above, and from below on the other side, so that no side stays hidden."""
 
 
 class Pair(NamedTuple):
@@ -49,12 +52,16 @@ class Room(NamedTuple):
         return found
 
 
-def pictures_of(parts: Sequence[ImportedPart]) -> Pair:
-    """Return pictures of the solids of one body, one at least."""
+def pictures_of(parts: Sequence[ImportedPart]) -> list[Pair]:
+    """Return pictures of the solids of one body, one at least, from each of `SIDES`."""
+    return [_pair(parts, *side) for side in SIDES]
+
+
+def _pair(parts: Sequence[ImportedPart], azimuth: float, elevation: float) -> Pair:
     corners = np.concatenate([part.surface.vertices for part in parts])
     low, high = corners.min(axis=0), corners.max(axis=0)
     room = Room((low + high) / 2.0, float((high - low).max()) / 2.0)
-    eye = Eye(SIZE)
+    eye = Eye(SIZE, azimuth=azimuth, elevation=elevation)
     placed = room.place(corners)
     eye.fit(1.0, lambda: placed)
     is_object = parts[0].body == "object"

@@ -45,9 +45,9 @@ def test_the_page_draws_what_a_picture_shows(watched, tmp_path, name, has_card):
     wait_until(tab, "cagepose.state().drawn > 0")
     tab.add_style_tag(content=f"#view {{ position: fixed !important; inset: 0 auto auto 0; width: {SIZE[0]}px;"
                               f" height: {SIZE[1]}px; z-index: 9 }}")  # fmt: skip
-    seen = [maker.eye.target.tolist(), maker.eye.axes[2].tolist(), maker.eye.half]
+    seen = [maker.eye.target.tolist(), maker.eye.axes[2].tolist(), maker.eye.half, maker.eye.distance]
     drawn = state(tab)["drawn"]
-    tab.evaluate("([target, back, half]) => cagepose.look(target, back, half)", seen)
+    tab.evaluate("([target, back, half, distance]) => cagepose.look(target, back, half, distance)", seen)
     wait_until(tab, f"cagepose.state().drawn > {drawn}")
     on_page = pixels(tab)
     assert on_page.shape == picture.shape

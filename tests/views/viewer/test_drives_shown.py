@@ -16,7 +16,7 @@ from cagepose.views.event_figure import event_figure
 from cagepose.views.pose_figure import pose_figure
 from cagepose.views.viewer.look import PAINT, ink
 from cagepose.views.viewer.page import page
-from cagepose.views.viewer.page_data import notes, page_data
+from cagepose.views.viewer.page_data import page_data, phase_note
 from cagepose.views.viewer.picture import PictureMaker
 from cagepose.views.viewer.playback import MOTIONS_PER_DRIVE, playback
 from cagepose.views.viewer.stage import Look, Stage
@@ -153,7 +153,7 @@ def test_figures_show_bodies_where_they_are(turned: Run) -> None:
 
 def test_words_tell_how_far_a_drive_got_and_why_it_went_no_farther(closed: Run, turned: Run) -> None:
     film = playback(closed)
-    assert notes(film)[0] == (
+    assert phase_note(film, closed.phases[0]) == (
         "close: blocked at 83.33 % of the drive (left by 25 mm; right by 25 mm):"
         " no motion of the object makes way for the drive, with any friction"
     )

@@ -14,11 +14,13 @@ import pytest
 from playwright.sync_api import Page
 
 from bench.pulls_table import depth_of_size
-from cagepose import load_scene, run
+from cagepose import Box, Cage, Load, Object, Pose, Scene, load_scene, run
 from cagepose.files.units import to_metres
 from cagepose.runs.further import Place, further
 from cagepose.runs.pull import pulled_load
 from cagepose.views.viewer import hand
+from cagepose.views.viewer.playback import playback
+from cagepose.views.viewer.stage import Stage
 from cagepose.views.viewer.what_if import WhatIf
 from driving import opened, served, shown_angles, slide, state, wait_until
 
@@ -103,6 +105,23 @@ def test_the_part_is_shown_where_the_run_goes_on_to_and_goes_back_to_the_start(w
             pass
         assert state(page)["hand"] is None
         assert state(page)["answers"] == 3
+
+
+def test_what_is_said_on_letting_go_is_told_from_the_phase_on_screen_and_not_from_the_pull_before() -> None:
+    """A block on a table with friction is pushed away, half of the way back, and back."""
+    table, weight = Box((1.0, 1.0, 0.02), name="table"), Load("weight", gravity=(0, 0, -9.81))
+    block = Object([Box((0.04, 0.03, 0.02))], pose=Pose((0.0, 0.0, 0.02)), mass_kg=1.0)
+    shown = playback(run(Scene(block, Cage(shapes=[table]), [weight], friction_coefficient=0.3)))
+    stage, way, said = Stage(shown), list[Place](), list[str]()
+    for distance in (0.02, 0.01, 0.0):
+        way.append(Place(Pose((distance, 0.0, 0.02)), {}))
+        answer = hand.pulled(shown, stage, hand.Grip(0, list(way), np.zeros(3), np.zeros(3)))
+        said.append(answer["led"]["says"])
+    assert said == [
+        "it stays, 20 mm and 0 deg from where weight has left it",
+        "it stays, 10 mm and 0 deg from where weight has left it",
+        "it is back where weight has left it",
+    ]
 
 
 def test_what_is_asked_for_and_not_yet_shown_is_said_and_a_slider_takes_the_part_away(

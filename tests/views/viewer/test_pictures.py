@@ -12,6 +12,7 @@ from PIL import Image
 
 from cagepose import Cage, Cylinder, Force, Hole, Load, Object, Pose, Scene, load_scene, run
 from cagepose.files.write import MADE_BY
+from cagepose.views.viewer.caption import MARK
 from cagepose.views.viewer.film import (
     END_MS,
     FILM_SIZE,
@@ -79,6 +80,14 @@ def test_contacts_are_drawn_where_they_are_and_everything_fits():
     assert ((places > 0.0) & (places < SIZE)).all()
     touching = set(last.touches.points.tolist())
     assert [is_marked(pictures, place) for place in places] == [index in touching for index in range(len(places))]
+
+
+@pytest.mark.parametrize(("name", "is_magnified"), [("wedge", False), ("rollers", True)])
+def test_a_picture_is_marked_as_exaggerated_only_where_something_is(name: str, is_magnified: bool) -> None:
+    """The wedge stands where it starts, and all of its cage touches it."""
+    shown = playback(run(load_scene(SCENES / f"{name}.yaml")), shots_per_motion=2)
+    picture = np.asarray(PictureMaker(Stage(shown), [200] * len(shown.run.phases)).picture(shown.shots[-1]))
+    assert (picture[-28, 12] == ink(MARK)).all() == is_magnified
 
 
 def test_a_picture_of_any_scene_is_ours_and_the_same_each_time():

@@ -13,7 +13,7 @@ from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, load_scene, ru
 from cagepose.kernels.outcome.trace import STALLED
 from cagepose.runs.driven_cage import cage_at_start
 from cagepose.views.viewer import playback as playback_module
-from cagepose.views.viewer.page_data import notes
+from cagepose.views.viewer.page_data import phase_note
 from cagepose.views.viewer.playback import SHOWN_OF_ESCAPE, playback
 from cagepose.views.viewer.stage import Look, Stage
 from cagepose.views.viewer.surface import nearest_on_object
@@ -173,7 +173,7 @@ def test_a_run_without_progress_tells_after_which_event(scene):
     assert stalled.verdict == "stalled"
     film = playback(stalled)
     assert [row.verdict for row in film.rows] == [None] * (len(film.rows) - 1) + ["stalled"]
-    assert f"stalled after event {len(film.rows)}: no progress" in "\n".join(notes(film))
+    assert f"stalled after event {len(film.rows)}: no progress" in phase_note(film, stalled.phases[-1])
 
 
 @pytest.mark.parametrize("name", ["peg-in-hole", "phone-dock", "plate-on-pins", "tapered-pin", "v-groove"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from PIL import Image, ImageDraw, ImageFont
@@ -12,12 +13,13 @@ from cagepose.runs.changes import mode_of
 from cagepose.runs.run import CONTRADICTED, Run
 from cagepose.studies.ending import Kind, run_kind
 from cagepose.views.drive_words import share_words
-from cagepose.views.viewer.labels import Pair, laid_out
+from cagepose.views.viewer.labels import Box, Pair, laid_out, leader
 from cagepose.views.viewer.look import PAPER
 from cagepose.views.viewer.playback import Film, Playback, Shot
 
 LOUD_INK, QUIET_INK = "#000000", "#777777"
 """Inks of names: of loads and contacts, and of cage points that do not touch."""
+LEADER_INK = "#8a8a8a"
 TITLE_INK, SOFT_INK, SCALE_INK = "#1a1a1a", "#5c5c5c", "#333333"
 VERDICT_INK: dict[Kind, str] = {"rest": "#00664a", "open": "#8a6100", "failure": "#a33b00", "elsewhere": "#a33b00"}
 MARK = "#e69f00"
@@ -36,11 +38,17 @@ class Label(NamedTuple):
         Where the thing is, pixels, y down.
     text, ink
         The name and its colour.
+    rank
+        Names of higher rank choose their places first; one of rank 0 is not moved away to where there is room.
+    force
+        The force of a contact in words, written behind the name.
     """
 
     place: Pair
     text: str
     ink: str
+    rank: float = 0.0
+    force: str = ""
 
 
 class Caption:
@@ -53,10 +61,14 @@ class Caption:
         self.units_per_pixel = units_per_pixel
         self.small, self.large = (ImageFont.load_default(height) for height in (SMALL, LARGE))
 
-    def write(self, image: Image.Image, shot: Shot | None, labels: list[Label], exaggeration: float) -> None:
-        """Write on a picture in which play is so many times as large; None for the shot: no words above it."""
+    def write(
+        self, image: Image.Image, shot: Shot | None, labels: list[Label], exaggeration: float, taken: Sequence[Box] = ()
+    ) -> None:
+        """Write on a picture in which play is so many times as large, no names over ``taken``; None for the shot: no
+        words above it.
+        """
         pen = ImageDraw.Draw(image)
-        self._write_names(pen, labels)
+        self._write_names(pen, labels, taken)
         if shot is not None and isinstance(self.shown, Playback):
             self._write_head(pen, self.shown.run, shot)
         self._write_exaggeration(pen, round(exaggeration))
@@ -72,15 +84,22 @@ class Caption:
             pen.text((across, 13.0), CONTRADICTED, ink, self.small)
         pen.text((14.0, 34.0), self._happening(run, shot), SOFT_INK, self.small)
 
-    def _write_names(self, pen: ImageDraw.ImageDraw, labels: list[Label]) -> None:
-        size = (self.width, self.height)
-        seen = [label for label in labels if all(0.0 < at < room for at, room in zip(label.place, size, strict=True))]
-        loud_first = sorted(seen, key=lambda label: label.ink != LOUD_INK)
-        sizes = [(pen.textlength(label.text, self.small), SMALL) for label in loud_first]
-        corners = laid_out([label.place for label in loud_first], sizes, (self.width, self.height))
-        for label, corner in zip(loud_first, corners, strict=True):
+    def _write_names(self, pen: ImageDraw.ImageDraw, labels: list[Label], taken: Sequence[Box]) -> None:
+        picture = (self.width, self.height)
+        seen = [
+            label for label in labels if all(0.0 < at < room for at, room in zip(label.place, picture, strict=True))
+        ]
+        ranked = sorted(seen, key=lambda label: -label.rank)
+        texts = [f"{label.text}  {label.force}".rstrip() for label in ranked]
+        sizes = [(pen.textlength(text, self.small), SMALL) for text in texts]
+        moving = [label.rank > 0.0 for label in ranked]
+        corners = laid_out([label.place for label in ranked], sizes, picture, moving, taken)
+        for label, text, size, corner in zip(ranked, texts, sizes, corners, strict=True):
             if corner is not None:
-                self._text(pen, corner, label.text, label.ink)
+                end = leader(label.place, corner, size)
+                if end is not None:
+                    pen.line((label.place, end), LEADER_INK)
+                self._text(pen, corner, text, label.ink)
 
     def _happening(self, run: Run, shot: Shot) -> str:
         if shot.row < 0:

@@ -28,12 +28,19 @@ class Eye:
         What is looked at, (3,), and half the height of the picture there, drawing units.
     """
 
-    def __init__(self, size: tuple[int, int], least_distance: float = 0.0) -> None:
+    def __init__(
+        self,
+        size: tuple[int, int],
+        least_distance: float = 0.0,
+        *,
+        azimuth: float = AZIMUTH,
+        elevation: float = ELEVATION,
+    ) -> None:
         """``least_distance``: how far the eye keeps from the target, so that a part of a large thing can be seen from
-        outside.
+        outside. ``azimuth``, ``elevation``: where it is, radians about z and above the ground.
         """
         self.size = np.array(size, dtype=np.float64)
-        sin_a, cos_a, sin_e, cos_e = math.sin(AZIMUTH), math.cos(AZIMUTH), math.sin(ELEVATION), math.cos(ELEVATION)
+        sin_a, cos_a, sin_e, cos_e = math.sin(azimuth), math.cos(azimuth), math.sin(elevation), math.cos(elevation)
         back, right = np.array([cos_a * cos_e, sin_a * cos_e, sin_e]), np.array([-sin_a, cos_a, 0.0])
         self.axes: FloatArray = np.stack([right, np.cross(back, right), back])
         self.target, self.half, self.least_distance = np.zeros(3), 1.0, least_distance

@@ -166,12 +166,12 @@ def _words(found: Run, grip: Grip, length_unit: LengthUnit) -> str:
         return f"no rest found ({last.verdict}); the next pull begins at its last rest"
     if is_pulled:
         return last.verdict
-    scene, before = found.scene, found.phases[-2].events[-1]
+    scene, before, name = found.scene, found.phases[-2].events[-1], found.phases[-2].name
     if same_pose(scene, last.events[-1], before):
-        return "it is back where it was"
+        return f"it is back where {name} has left it"
     center = scene.object.center_of_gravity_m
     way_m = float(np.linalg.norm(last.pose.transform(center) - before.pose_world_object.transform(center)))
     turned = 2.0 * math.acos(min(1.0, abs(float(last.pose.quaternion_wxyz @ before.pose_world_object.quaternion_wxyz))))
     words = LengthWords(length_unit, scene.size_m)
     length, angle = short(float(from_metres(way_m, length_unit)), 3, words.noise), short(math.degrees(turned), 3, 1e-6)
-    return f"it stays, moved by {length} {length_unit} and turned by {angle} deg"
+    return f"it stays, {length} {length_unit} and {angle} deg from where {name} has left it"

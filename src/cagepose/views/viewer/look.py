@@ -53,22 +53,24 @@ BALL, FREE_BALL, ROD, THIN, HEAD = 5.5, 3.5, 2.2, 1.0, (4.5, 13.0)
 """Radii in pixels of contacts, of points that do not touch, of arrows and of lines; radius and length of a tip."""
 FORCE, LOAD, TRAVEL, NORMAL, COIL = 90.0, 84.0, 80.0, 30.0, 7.0
 """Lengths in pixels of the longest force and other arrows, and the radius of a spring."""
-SECOND_HEAD, LONGEST_SPRING, LEAST_SHOWN = 0.8, 1.0, 0.02
-"""Where a moment's arrow has its other head; the greatest length of a spring, in drawing units; a force below this part
-of the greatest has no arrow.
+SECOND_HEAD, LONGEST_SPRING, SHORTEST_FORCE = 0.8, 1.0, 22.0
+"""Where a moment's arrow has its other head; the greatest length of a spring, in drawing units; the least length of a
+force's arrow, in pixels.
 """
 PIN, PIN_OF_CAGE, PIN_SLOPE = 0.05, 0.12, 0.22
 """A cage point as a pin: its length in drawing units, and in reaches of all points, at most; its radius beside that."""
 GRID_LINES, BELOW = 12, 0.01
 """From the middle of the ground to one side; how far it lies below all else, in drawing units."""
-NEAR_CAGE, LEAST_NEAR = 0.3, 0.06
-"""What counts as near the cage: a share of its extent, and at least this in drawing units."""
-FAR_FROM_CAGE = 1.0
-"""In extents of the cage. What reaches beyond this is cut to what is near."""
+DISTANCE_OF_EYE = 3.0
+"""In radii of the scene: so far off is the eye at least of a picture of a part, or it would stand within the rest."""
+INSET, INSET_FROM_EDGE = (0.23, 0.15), (16.0, 52.0)
+"""Of a picture of a part, the inset that shows the whole: its size in widths of the picture, and how many pixels it is
+from the right edge and from the lower one.
+"""
 FEW_NAMES = 14
 """If there are more contacts than these, only those are named that press or were just reached."""
 LEAST_FORCE = 1e-9
-"""In parts of the greatest one; what is less is rounding."""
+"""In parts of the greatest one of its phase; what is less is rounding."""
 
 
 def document() -> dict[str, Any]:

@@ -6,8 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from cagepose.files.units import from_metres
-from cagepose.files.words import LengthWords
+from cagepose.files.words import LengthWords, force_words
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
@@ -17,10 +19,10 @@ from cagepose.model.wording import duration
 from cagepose.runs.cases import contact_friction
 from cagepose.runs.changes import Change, changes_of, mode_of
 from cagepose.runs.driven_cage import CageAt
-from cagepose.runs.load_scaling import scaled_load
+from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.on_the_way import DRIVEN
-from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, STOPPED
+from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, STOPPED, PhaseRun
 from cagepose.studies.acts import Act
 from cagepose.studies.comparison import ENDS, same_pose
 from cagepose.studies.ending import run_kind, turned_far, verdict_kind
@@ -52,6 +54,7 @@ class _Writer:
         self.shown = shown
         self.run = shown.run
         self.stage = stage
+        self.greatest_forces = shown.greatest_forces
         self.usual_friction = chosen_method(self.run.scene, self.run.method).friction(self.run.scene)
         self.words = LengthWords(shown.length_unit, shown.run.scene.size_m)
         self.touches = list(dict.fromkeys(shot.touches for shot in shown.shots))
@@ -66,7 +69,6 @@ class _Writer:
             "name": run.scene.name,
             "method": run.method,
             "solve": duration(run.solve_s),
-            "verdict": run.verdict,
             "verdictKind": run_kind(run),
             "contradicted": CONTRADICTED if run.is_contradicted else "",
             "turned": list(turned_far(run)),
@@ -92,13 +94,17 @@ class _Writer:
             },
             "clearances": gap_data(self.shown, stage),
             **self._solids(),
-            "greatestForce": self._greatest_force(),
-            "forceUnit": self._force_unit(),
             "phases": [
                 {
                     **view._asdict(),
                     "name": phase.name,
+                    "verdict": phase.verdict,
+                    "verdictKind": verdict_kind(phase.verdict),
+                    "isUnstable": phase.proof.stability == "unstable",
+                    "note": phase_note(self.shown, phase),
                     "loads": [self._load(act) for act in acts],
+                    "greatestForce": self.greatest_forces[index],
+                    "forceUnit": force_unit(run.scene, run.scene.loads[index]),
                     "drive": drive_data(run, index, self.shown.length_unit),
                 }
                 for index, (phase, view, acts) in enumerate(
@@ -197,6 +203,7 @@ class _Writer:
             "boxes": list(touches.boxes),
             "normals": _rounded(touches.normals_object),
             "forces": None if forces is None else (forces + 0.0).tolist(),
+            "words": None if forces is None else _force_words(touches.normals_object, forces),
             "places": self._places(touches),
             "friction": None if forces is None else [self._friction(*pair) for pair in self._pairs(touches)],
         }
@@ -256,30 +263,28 @@ class _Writer:
             "body": act.body,
         }
 
-    def _greatest_force(self) -> float:
-        return self.shown.greatest_force or 1.0
 
-    def _force_unit(self) -> str:
-        loads = self.run.scene.loads[: len(self.run.phases)]
-        return "N" if all(scaled_load(self.run.scene, load).in_newtons for load in loads) else "parts of the load"
+def _force_words(normals: FloatArray, forces: FloatArray) -> list[str]:
+    along = -np.einsum("ij,ij->i", forces, normals)
+    across = np.linalg.norm(forces + along[:, None] * normals, axis=1)
+    return [force_words(*pair) for pair in zip(along.tolist(), across.tolist(), strict=True)]
+
+
+def phase_note(shown: Playback, phase: PhaseRun) -> str:
+    """Return why a phase ended as it did."""
+    proof, far = phase.proof, how_far(phase, shown.length_unit)
+    if phase.verdict in AT_REST:
+        return f"{phase.name}: {phase.verdict}{far} ({proof.stability or 'moves'}): {proof.reason}"
+    if phase.verdict in STOPPED:
+        return f"{phase.name}: {phase.verdict}{far}: {STOPS[phase.verdict]}"
+    where = f" after event {len(shown.rows)}: {_failing(shown)}" if phase.verdict in FAILURES else ""
+    return f"{phase.name}: {phase.verdict}{far}{where}"
 
 
 def notes(shown: Playback) -> list[str]:
-    """Return what a careful viewer should know: why each phase ended as it did, and the run's warnings."""
-    run = shown.run
-    ends = []
-    for phase in run.phases:
-        proof = phase.proof
-        far = how_far(phase, shown.length_unit)
-        if phase.verdict in AT_REST:
-            ends.append(f"{phase.name}: {phase.verdict}{far} ({proof.stability or 'moves'}): {proof.reason}")
-        elif phase.verdict in STOPPED:
-            ends.append(f"{phase.name}: {phase.verdict}{far}: {STOPS[phase.verdict]}")
-        else:
-            where = f" after event {len(shown.rows)}: {_failing(shown)}" if phase.verdict in FAILURES else ""
-            ends.append(f"{phase.name}: {phase.verdict}{far}{where}")
-    turned = [f"It turned far in {told}" for told in turned_far(run)]
-    return [*ends, *turned, *(f"Warning: {warning}" for warning in run.warnings)]
+    """Return what else a careful viewer should know: how far the object turned, and the run's warnings."""
+    turned = [f"It turned far in {told}" for told in turned_far(shown.run)]
+    return [*turned, *(f"Warning: {warning}" for warning in shown.run.warnings)]
 
 
 def _failing(shown: Playback) -> str:

@@ -146,10 +146,14 @@ class Film:
     loads: tuple[tuple[Act, ...], ...]
 
     @property
-    def greatest_force(self) -> float:
-        """The size of each contact force in all shots, newtons or parts of the load; 0 where none is known."""
-        known = [shot.touches.forces_object for shot in self.shots if shot.touches.forces_object is not None]
-        return max((float(np.linalg.norm(forces, axis=1).max()) for forces in known), default=0.0)
+    def greatest_forces(self) -> tuple[float, ...]:
+        """The greatest contact force of each phase, newtons or parts of the load; 1 where none is known."""
+        greatest = [0.0] * len(self.loads)
+        for shot in self.shots:
+            if shot.touches.forces_object is not None:
+                found = float(np.linalg.norm(shot.touches.forces_object, axis=1).max(initial=0.0))
+                greatest[shot.phase] = max(greatest[shot.phase], found)
+        return tuple(force or 1.0 for force in greatest)
 
 
 @dataclass(frozen=True, eq=False)

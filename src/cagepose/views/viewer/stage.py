@@ -51,6 +51,8 @@ SIZE_STEP = 1.25
 """The unit of drawing is the scene's size, less so many such steps as what is shown of it is smaller."""
 MOTION_AT_REST = 1e-7
 """Radians, and sizes of the scene. What moves less stands still but for rounding."""
+LEAST_SEEN = 1e-6
+"""Sizes of the scene, and radians. Less is not seen."""
 EASED_SHARE = 0.25
 """Share of a motion that an exaggeration takes to pass into another."""
 
@@ -286,6 +288,18 @@ class Stage:
             aside = float(np.linalg.norm(out)) or 1.0
             shifts[row] += hole.rotation @ out * ((look.factor - 1.0) * self.plays[1][number] / aside)
         return shifts
+
+    def is_magnified(self, shot: int, look: Look) -> bool:
+        """Whether anything of a look is larger than it is: where nothing has moved and all touches, nothing is."""
+        if look.factor == 1.0:
+            return False
+        pose = self.shown.shots[shot].pose_world_object
+        shown = self.pose(pose, look)
+        way = shown.transform(self.center_object_m) - pose.transform(self.center_object_m)
+        moved = np.concatenate([way[None], self.shifts(look)]) / self.size_m
+        plays = (look.factor - 1.0) * np.concatenate(self.plays) / self.size_m
+        turned = np.linalg.norm(_turn_vector(pose, shown))
+        return bool(max(np.linalg.norm(moved, axis=1).max(), plays.max(initial=0.0), turned) > LEAST_SEEN)
 
     def points(self, look: Look) -> FloatArray:
         """Return where the cage points are shown, (n, 3), metres in the world."""

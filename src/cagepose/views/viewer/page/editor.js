@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources b96033030ba4b4dbaae023f0f3efed614afb13d8b5e4f0a006be4d0e1b478e2d).
+// Built by `make page` from page/ (sources 41d921db992f694a1a3eb4541a8d4397a8439d396ec50ae515fddb41f5854aae).
 /*! Contains parts of @codemirror/autocomplete, @codemirror/commands, @codemirror/language, @codemirror/lint, @codemirror/state, @codemirror/streamparser, @codemirror/view:
 MIT License
 
