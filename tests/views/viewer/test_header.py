@@ -63,12 +63,14 @@ def test_proof_and_warnings_are_above_the_fold_and_nothing_scrolls_within_what_s
     assert set(tab.evaluate(SCROLLED)) <= {"ASIDE"}
 
 
-def test_sliders_do_not_scroll_by_themselves(watched):
+def test_sliders_do_not_scroll_by_themselves_and_leave_proof_and_warnings_above_the_fold(watched):
     with served(SCENES / "rail-pitch.yaml") as server:
         watched.page.set_viewport_size({"width": 1440, "height": 900})
         tab = opened_live(watched, server)
         assert tab.locator("#controls label").count() > 10
         assert tab.evaluate(SCROLLED) == ["ASIDE"]
+        notes = tab.locator("#notes").bounding_box()
+        assert notes["y"] + notes["height"] < 900.0
 
 
 def test_where_nothing_is_magnified_the_badge_says_true_scale(opened):
