@@ -68,17 +68,17 @@ def edited_text(scene_text: SceneText, set_values: Sequence[str]) -> str:
         The scene that would result cannot be used, see `load_scene`.
     """
     scene_text.scene_file(set_values)
-    return set_in_text(scene_text, set_values)
-
-
-def set_in_text(scene_text: SceneText, set_values: Sequence[str]) -> str:
-    """As `edited_text`, of values that have been checked. Numbers in the place of numbers change nothing else; with
-    other values, blanks within lines may change.
-    """
     changes: dict[Path, object] = {}
     for argument in set_values:
         key, _, text = argument.partition("=")
         changes[parse_key_path(key.strip())] = parse_yaml(text, argument).data if text.strip() else None
+    return changed_text(scene_text, changes)
+
+
+def changed_text(scene_text: SceneText, changes: Mapping[Path, object]) -> str:
+    """Return the file's text with other values at some paths, unchecked. Numbers in the place of numbers change nothing
+    else; with other values, blanks within lines may change.
+    """
     in_place = with_numbers(scene_text.text, scene_text.yaml, changes)
     return with_values(scene_text.text, changes) if in_place is None else in_place
 

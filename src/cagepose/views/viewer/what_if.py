@@ -14,7 +14,7 @@ import numpy as np
 
 from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
 from cagepose.files.parameters import evaluated
-from cagepose.files.scene_edit import ANGLE_DECIMALS, set_in_text, setting, with_cage_angles
+from cagepose.files.scene_edit import ANGLE_DECIMALS, changed_text, setting, with_cage_angles
 from cagepose.files.scene_file import SceneFile, SceneText
 from cagepose.files.units import from_metres, to_metres
 from cagepose.model.pose import Pose
@@ -96,13 +96,13 @@ class WhatIf:
         return pulled(shown, stage, grip_of(pull, shown.run, shown.length_unit))
 
     def _run(self, values: str) -> _Ran:
-        settings = self._settings(json.loads(values))
-        scene_file = self._text.scene_file(settings)
+        changes = self._changes(json.loads(values))
+        scene_file = self._scene_file_with(changes)
         shown = playback(run(scene_file.scene), scene_file.length_unit, SHOTS_PER_MOTION)
         stage = Stage(shown)
         for phase in stage.phases:
             stage.gaps_world(phase.last)  # from there a pull goes on
-        return _Ran(shown, stage, set_in_text(self._text, settings) if settings else self.scene_text.text)
+        return _Ran(shown, stage, self._text_with(changes))
 
     def scene(self, values: object) -> SceneFile:
         """Return the scene with ``values``.
@@ -112,13 +112,22 @@ class WhatIf:
         SceneFileError, ValueError
             As `answer`.
         """
-        return self._text.scene_file(self._settings(values))
+        return self._scene_file_with(self._changes(values))
 
-    def _settings(self, values: object) -> tuple[str, ...]:
+    def _scene_file_with(self, changes: dict[str, object]) -> SceneFile:
+        return self._text.scene_file([setting(key, value) for key, value in changes.items()])
+
+    def _text_with(self, changes: dict[str, object]) -> str:
+        if not changes:
+            return self.scene_text.text
+        return changed_text(self._text, {parse_key_path(key): value for key, value in changes.items()})
+
+    def _changes(self, values: object) -> dict[str, object]:
+        """Return what changes in the file, by its key."""
         if not isinstance(values, dict):
             raise ValueError("the values are no mapping")
         keys = {START, *(control.key for control in self.controls)}
-        settings = []
+        changes = dict[str, object]()
         for key, value in values.items():
             if key not in keys and not (_is_number(value) and _is_number(self._at(key))):
                 raise ValueError(f"{key} cannot be changed here")
@@ -126,11 +135,10 @@ class WhatIf:
                 raise ValueError(f"{key} is no number, no word and no list of numbers")
             if key == START:
                 continue
-            given = {"coefficient": value, **self._friction_of} if key == "friction" else value
-            settings.append(setting(key, given))
+            changes[key] = {"coefficient": value, **self._friction_of} if key == "friction" else value
         moves = any(key == START or key.startswith(CAGE_POSE) for key in values)
         start = self._start(values) if moves else None
-        return tuple(settings) if start is None else (*settings, setting("object.pose", start))
+        return changes if start is None else {**changes, OBJECT_POSE: start}
 
     def _at(self, key: object) -> object:
         """Return what stands at a key of the text; None: nothing does."""
