@@ -5,10 +5,8 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
-from multiprocessing import get_context
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from build_kernels.levels import LEVELS
 from cagepose.errors import KernelsError
@@ -17,8 +15,10 @@ from cagepose.kernels.native import library
 
 def build(target: Path = library.LIBRARY, *, all_levels: bool = False) -> Path:
     """Compile all kernels and write the library, for this machine's level of processors or for all; return where."""
-    entries = _entries()
+    # Numba shall neither optimise what LLVM optimises as a whole later, nor call Intel's library.
+    os.environ.update(NUMBA_OPT="0", NUMBA_DISABLE_INTEL_SVML="1")
     from build_kernels.c_functions import module_of
+    from build_kernels.compile import take_over
     from build_kernels.kept import remove_unused
     from build_kernels.link import link, own_level
 
@@ -28,35 +28,15 @@ def build(target: Path = library.LIBRARY, *, all_levels: bool = False) -> Path:
         sys.stderr.write(f"  {time.perf_counter() - began:4.0f} s  {text}\n")
         sys.stderr.flush()
 
-    second = get_context("spawn").Process(target=_compile_from_the_last, daemon=True)
-    second.start()
+    take_over()
+    from build_kernels.entries import entries  # the first import of a kernel
+
     module = module_of(entries(), lambda n_ready, n_kernels: say(f"{n_ready} of about {n_kernels} kernels are ready"))
-    second.terminate()
-    second.join()
     levels: Sequence[str] = LEVELS if all_levels else (own_level(),)
     say(f"optimising them as a whole for {' and '.join(levels)}")
     link(module, levels, library.sources_hash(), target)
     remove_unused()
     return target
-
-
-def _entries() -> Callable[[], Iterator[tuple[Any, tuple[object, ...]]]]:
-    """Return what yields all entries, once kernels are imported as the build takes them."""
-    # Numba shall neither optimise what LLVM optimises as a whole later, nor call Intel's library.
-    os.environ.update(NUMBA_OPT="0", NUMBA_DISABLE_INTEL_SVML="1")
-    from build_kernels.compile import take_over
-
-    take_over()
-    from build_kernels.entries import entries  # the first import of a kernel
-
-    return entries
-
-
-def _compile_from_the_last() -> None:
-    entries = _entries()
-    from build_kernels.c_functions import keep_from_the_last
-
-    keep_from_the_last(entries())
 
 
 def is_built(*, all_levels: bool = False) -> bool:

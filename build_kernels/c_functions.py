@@ -59,15 +59,6 @@ def module_of(
     return Module(whole, signatures, digest)
 
 
-def keep_from_the_last(entries: Iterable[tuple[Any, tuple[object, ...]]]) -> None:
-    """Compile entries from the last to the first, for what is kept of them: a build that begins with the first finds
-    it, and so two processes share the work.
-    """
-    set_up_numba()
-    for entry, arguments in reversed(list(entries)):
-        entry.compile(tuple(_type_of(value) for value in arguments))
-
-
 def _add_all_called(library: KernelLibrary, found: dict[int, KernelLibrary]) -> None:
     """Add a kernel's library and those of all that it calls."""
     if id(library) not in found:
