@@ -153,6 +153,13 @@ def test_line_ends_of_the_file_stay_as_they_are(tmp_path: Path) -> None:
     assert path.read_bytes() == (TEXT + "# a\n").replace("\n", "\r\n").encode()
 
 
+def test_single_returns_are_line_ends_to_the_page_too(tmp_path: Path) -> None:
+    """So the text that the page compares with the file's is the one that its editor shows."""
+    path = tmp_path / "returns.yaml"
+    path.write_bytes(TEXT.replace("\n", "\r").encode())
+    assert Desk(path).page_content()["text"] == TEXT
+
+
 def test_save_as_makes_a_new_file_in_the_same_folder_and_overwrites_none(server: ViewServer, scene: Path) -> None:
     assert ask(server, "/save-as", {"text": TEXT, "name": "other"}) == (200, {"name": "other.yaml"})
     assert (scene.parent / "other.yaml").read_text(encoding="utf-8") == TEXT
@@ -175,6 +182,32 @@ def test_save_as_makes_a_new_file_in_the_same_folder_and_overwrites_none(server:
         assert answer["problems"][0].startswith("not saved: "), name
     assert sorted(path.name for path in scene.parent.iterdir()) == ["other.yaml", "rollers.yaml"]
     assert (scene.parent / "other.yaml").read_text(encoding="utf-8") == TEXT
+
+
+@pytest.mark.parametrize(
+    "text", ["half a character: \ud800", "# " + 4 * 1024**2 * "x"], ids=["half a character", "too large"]
+)
+def test_of_a_text_that_no_file_can_hold_no_empty_file_is_left(server: ViewServer, scene: Path, text: str) -> None:
+    version = ask(server, "/file", {"version": None})[1]["version"]
+    for path in ("/save-as", "/save"):
+        assert ask(server, path, {"text": text, "name": "other", "version": version})[0] == 422
+    assert [path.name for path in scene.parent.iterdir()] == ["rollers.yaml"]
+    assert scene.read_text(encoding="utf-8") == TEXT
+
+
+def test_a_file_that_cannot_be_written_is_told_by_its_own_name(server: ViewServer) -> None:
+    name = 300 * "x"
+    problems = ask(server, "/save-as", {"text": TEXT, "name": name})[1]["problems"]
+    assert problems == [f"not saved: {name}.yaml cannot be written: File name too long"]
+
+
+def test_a_file_that_is_write_protected_stays_as_it_is(server: ViewServer, scene: Path) -> None:
+    scene.chmod(0o444)
+    version = ask(server, "/file", {"version": None})[1]["version"]
+    status, answer = ask(server, "/save", {"text": "x", "version": version})
+    assert status == 422
+    assert answer["problems"] == ["not saved: rollers.yaml is write-protected; save under another name"]
+    assert scene.read_text(encoding="utf-8") == TEXT
 
 
 def test_nobody_writes_by_another_name_or_without_json(server: ViewServer, scene: Path) -> None:

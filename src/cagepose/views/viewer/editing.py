@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import stat
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
@@ -77,8 +78,6 @@ class Desk:
 
     def refusal(self, error: Exception) -> dict[str, Any]:
         """Return what is wrong, for people who look at sliders or at the text; and where in the text."""
-        if isinstance(error, OSError) and error.strerror:
-            return {"problems": [printable(f"{self._path.name} cannot be written: {error.strerror}")]}
         if not isinstance(error, SceneFileError):
             return {"problems": [printable(str(error))]}
         problems, mistakes = [], []
@@ -157,13 +156,18 @@ class Desk:
                 raise ValueError(f"not saved: {name} was changed on disk since this page read it")
             content = _as_bytes(text, has_returns=b"\r\n" in before)
             mode = self._path.stat().st_mode
-            write_whole(self._path, content)
-            self._path.chmod(mode)
+            if not mode & stat.S_IWRITE:
+                raise ValueError(f"not saved: {name} is write-protected; save under another name")
+            try:
+                write_whole(self._path, content)
+                self._path.chmod(mode)
+            except OSError as error:
+                raise _not_written(name, error) from None
         return {"version": _version(content)}
 
     def _save_as(self, asked: Question) -> dict[str, Any]:
         """Write a new file beside this one."""
-        text, name = _text(asked), asked.get("name")
+        content, name = _as_bytes(_text(asked)), asked.get("name")
         if not isinstance(name, str) or not name.strip() or name != Path(name).name or "\\" in name or "\0" in name:
             raise ValueError("not saved: give the name of a file, without a folder")
         name = name.strip()
@@ -172,9 +176,11 @@ class Desk:
         name = name if name.endswith(SCENE_SUFFIXES) else f"{name}.yaml"
         try:
             with self._path.with_name(name).open("xb") as stream:
-                stream.write(_as_bytes(text))
+                stream.write(content)
         except FileExistsError:
             raise ValueError(f"not saved: {name} is there already; give another name") from None
+        except OSError as error:
+            raise _not_written(name, error) from None
         return {"name": name}
 
 
@@ -191,7 +197,7 @@ def _text(asked: Question) -> str:
 
 def _with_plain_ends(text: str) -> str:
     """Return a text with line ends as an editor in a browser has them."""
-    return text.replace("\r\n", "\n")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _as_bytes(text: str, *, has_returns: bool = False) -> bytes:
@@ -202,6 +208,10 @@ def _as_bytes(text: str, *, has_returns: bool = False) -> bytes:
     if len(content) > MAX_FILE_BYTES:
         raise ValueError(f"not saved: the text is larger than {MAX_FILE_BYTES // 1024**2} MiB")
     return content
+
+
+def _not_written(name: str, error: OSError) -> ValueError:
+    return ValueError(f"not saved: {name} cannot be written: {error.strerror or error}")
 
 
 def _version(content: bytes) -> str:
