@@ -15,9 +15,18 @@ from cagepose.errors import SceneFileError
 from cagepose.files.scene_file import parse_scene
 from cagepose.views.viewer.editing import Desk
 from cagepose.views.viewer.server import ViewServer
+from cagepose.views.viewer.what_if import WhatIf
 from driving import served
 from our_scenes import SCENES
 
+PLATE = """\
+name: plate
+object:
+  boxes: [{size: [20, 20, 1]}]
+  pose: {position: [0, 0, 5]}
+cage: {points: {file: points.csv}}
+loads: [{name: weight, gravity: [0, 0, -1]}]
+"""
 TEXT = next(path for path in SCENES if path.stem == "rollers").read_text(encoding="utf-8")
 
 
@@ -107,9 +116,7 @@ def test_the_file_is_sent_again_only_when_it_was_changed(server: ViewServer, sce
 def test_files_that_a_text_names_are_watched_and_read_anew(tmp_path: Path) -> None:
     points = tmp_path / "points.csv"
     points.write_text("5,0,0\n-5,4,0\n-5,-4,0\n", encoding="utf-8")
-    text = "name: plate\nobject:\n  boxes: [{size: [20, 20, 1]}]\n  pose: {position: [0, 0, 5]}\n"
-    text += "cage: {points: {file: points.csv}}\nloads: [{name: weight, gravity: [0, 0, -1]}]\n"
-    (tmp_path / "plate.yaml").write_text(text, encoding="utf-8")
+    (tmp_path / "plate.yaml").write_text(PLATE, encoding="utf-8")
     desk = Desk(tmp_path / "plate.yaml")
     answer = desk.answers["/run"]({})
     names, stamp = answer["beside"]["names"], answer["beside"]["stamp"]
@@ -120,6 +127,24 @@ def test_files_that_a_text_names_are_watched_and_read_anew(tmp_path: Path) -> No
     assert desk.answers["/run"]({})["shots"][-1]["origin"] == pytest.approx([0.0, 0.0, 2.0])
     with pytest.raises(ValueError, match="no list of names"):
         desk.answers["/file"]({"beside": [3]})
+
+
+def test_a_file_that_is_written_while_it_is_run_is_another_one_afterwards(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    points = tmp_path / "points.csv"
+    points.write_text("5,0,0\n-5,4,0\n-5,-4,0\n", encoding="utf-8")
+    (tmp_path / "plate.yaml").write_text(PLATE, encoding="utf-8")
+    desk, answer = Desk(tmp_path / "plate.yaml"), WhatIf.answer
+
+    def and_meanwhile(what_if: WhatIf, values: object) -> dict[str, Any]:
+        found = answer(what_if, values)
+        points.write_text("5,0,1.5\n-5,4,1.5\n-5,-4,1.5\n", encoding="utf-8")
+        return found
+
+    monkeypatch.setattr(WhatIf, "answer", and_meanwhile)
+    beside = desk.answers["/run"]({})["beside"]
+    assert desk.answers["/file"]({"beside": beside["names"]})["stamp"] != beside["stamp"]
 
 
 def test_saving_writes_the_file_and_refuses_where_it_was_changed_on_disk(server: ViewServer, scene: Path) -> None:

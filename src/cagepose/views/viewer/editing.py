@@ -9,7 +9,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from threading import Lock
-from typing import Any
+from typing import Any, NamedTuple
 
 from cagepose.errors import CageposeError, FileProblem, Problem, SceneFileError, printable
 from cagepose.files.files_named import files_named, stamp_of
@@ -23,6 +23,21 @@ from cagepose.views.viewer.what_if import WhatIf
 
 TEXTS_KEPT = 4
 Question = dict[str, Any]
+
+
+class _Asked(NamedTuple):
+    """What a question is about.
+
+    Attributes
+    ----------
+    what_if
+        Its text, to be run.
+    beside
+        Files that the text names, and their stamp before they were read: one that is written meanwhile is another one.
+    """
+
+    what_if: WhatIf
+    beside: dict[str, Any]
 
 
 class Desk:
@@ -58,7 +73,7 @@ class Desk:
         self._scene_text_of = lru_cache(TEXTS_KEPT)(self._read)
         self._what_if_of = lru_cache(TEXTS_KEPT)(self._made)
         self._start = edited(read_scene_text(path), changes).text
-        self._what_if({})
+        self._asked({})
         self._writing = Lock()
         self.answers: dict[str, Callable[[Question], dict[str, Any]]] = {"/run": self._run, "/pull": self._pull}
         if can_edit:
@@ -66,9 +81,8 @@ class Desk:
 
     def page_content(self) -> dict[str, Any]:
         """Return what a page needs to ask."""
-        start = self._what_if({})
         content = {
-            **self._told(start),
+            **self._told(self._asked({})),
             "fileName": f"{self._path.stem}-changed.yaml",
             "text": _with_plain_ends(self._start),
         }
@@ -89,31 +103,29 @@ class Desk:
         return {"problems": problems, "mistakes": mistakes}
 
     def _run(self, asked: Question) -> dict[str, Any]:
-        what_if = self._what_if(asked)
-        found = what_if.answer(asked.get("values", {}))
+        about = self._asked(asked)
+        found = about.what_if.answer(asked.get("values", {}))
         found["text"] = _with_plain_ends(found["text"])
-        return {**found, **self._told(what_if)}
+        return {**found, **self._told(about)}
 
-    def _told(self, what_if: WhatIf) -> dict[str, Any]:
+    def _told(self, about: _Asked) -> dict[str, Any]:
         """What a page is told of a text beside its run: its controls, and the files that it names."""
-        names = _names(what_if.scene_text)
-        return {
-            "controls": [control.document() for control in what_if.controls],
-            "beside": {"names": names, "stamp": stamp_of(self._path.parent, names)},
-        }
+        return {"controls": [control.document() for control in about.what_if.controls], "beside": about.beside}
 
     def _pull(self, asked: Question) -> dict[str, Any]:
-        return self._what_if(asked).pulled(asked.get("values", {}), asked.get("pull"))
+        return self._asked(asked).what_if.pulled(asked.get("values", {}), asked.get("pull"))
 
     def _vary(self, asked: Question) -> dict[str, Any]:
-        return runs_with(self._what_if(asked).scene_text, asked.get("key"), asked.get("numbers"))
+        return runs_with(self._asked(asked).what_if.scene_text, asked.get("key"), asked.get("numbers"))
 
-    def _what_if(self, asked: Question) -> WhatIf:
+    def _asked(self, asked: Question) -> _Asked:
         is_start = asked.get("text") is None
         if not (is_start or self._can_edit):
             raise ValueError("the text cannot be changed from here; serve on this machine alone, without --host")
         text = self._start if is_start else _text(asked)
-        return self._what_if_of(text, stamp_of(self._path.parent, _names(self._scene_text_of(text))))
+        names = list(files_named(self._scene_text_of(text).yaml.data).values())
+        stamp = stamp_of(self._path.parent, names)
+        return _Asked(self._what_if_of(text, stamp), {"names": names, "stamp": stamp})
 
     def _read(self, text: str) -> SceneText:
         return scene_text_of(text, self._source)
@@ -182,10 +194,6 @@ class Desk:
         except OSError as error:
             raise _not_written(name, error) from None
         return {"name": name}
-
-
-def _names(scene_text: SceneText) -> list[str]:
-    return list(files_named(scene_text.yaml.data).values())
 
 
 def _text(asked: Question) -> str:
