@@ -14,9 +14,9 @@ const keyPath = (path) => path.reduce((text, key) => (typeof key === "number" ? 
 
 class Sheet {
   // `changedSize()` is called when the picture has more room, or less.
-  constructor({ name, schema, version, beside }, panel, changedSize) {
+  constructor({ name, schema, version, saved, beside }, panel, changedSize) {
     Object.assign(this, { name, beside, panel, changedSize, chosen: [], begun: panel.text });
-    this.onDisk = new OnDisk(this, name, version, panel.text);
+    this.onDisk = new OnDisk(this, name, version, saved);
     this.build();
     this.writing = new Writing(this.room, panel.text, schema, { typed: (isNow) => this.typed(isNow), moved: () => this.tellNumber(), altClicked: () => this.addSlider() });
     this.varied = new Varied(this.study, { text: () => this.text, seen: (path, value) => this.write(path, value) });
@@ -62,7 +62,7 @@ class Sheet {
   }
 
   get isUnsaved() {
-    return this.onDisk.text !== null && this.text !== this.onDisk.text;
+    return this.text !== this.onDisk.text;
   }
 
   // The text was edited by hand: it is run when nothing is typed any more, or now.
@@ -122,7 +122,7 @@ class Sheet {
   }
 
   tellState() {
-    this.state.textContent = this.onDisk.text === null ? "" : this.isUnsaved ? "edited, not saved" : "as in the file";
+    this.state.textContent = this.isUnsaved ? "edited, not saved" : "as in the file";
     this.saveButton.disabled = !this.isUnsaved;
   }
 

@@ -21,6 +21,8 @@ from our_scenes import SCENES
 RAIL = next(path for path in SCENES if path.stem == "rail-pitch")
 TEXT = RAIL.read_text(encoding="utf-8")
 
+HEAD, NEWS = ("document.querySelector('#text .head').textContent", "document.querySelector('#text .news').textContent")
+
 PLATE = """\
 name: plate
 object:
@@ -259,6 +261,56 @@ def test_a_save_from_outside_asks_where_there_are_edits_and_nothing_is_lost(shee
     sheet.get_by_role("button", name="save", exact=True).click()
     wait_until(sheet, "document.querySelector('#text .head').innerText.includes('as in the file')")
     assert scene.read_text(encoding="utf-8") == mine
+
+
+def test_nothing_is_saved_over_another_text_before_somebody_has_chosen(watched: Any, sheet: Page, scene: Path) -> None:
+    theirs, mine = TEXT + "# theirs\n", TEXT.replace("name: rail", "name: my rail")
+    replace(sheet, "rail, pitch", "my rail, pitch")
+    scene.write_text(theirs, encoding="utf-8")
+    keep = sheet.get_by_role("button", name="keep mine")
+    keep.wait_for()
+    with sheet.expect_response("**/save") as answer:
+        sheet.get_by_role("button", name="save", exact=True).click()
+    assert answer.value.status == 422
+    watched.complaints.clear()  # the browser notes the refusal itself
+    assert scene.read_text(encoding="utf-8") == theirs
+    keep.click()  # it is asked again
+    sheet.get_by_role("button", name="save", exact=True).click()
+    wait_until(sheet, f"{HEAD}.includes('as in the file')")
+    assert scene.read_text(encoding="utf-8") == mine
+
+
+def test_a_question_is_withdrawn_where_the_file_is_as_it_was(sheet: Page, scene: Path) -> None:
+    replace(sheet, "rail, pitch", "my rail, pitch")
+    scene.write_text(TEXT + "# theirs\n", encoding="utf-8")
+    sheet.get_by_role("button", name="keep mine").wait_for()
+    scene.write_text(TEXT, encoding="utf-8")
+    sheet.locator("#text .news").wait_for(state="hidden")
+    assert "edited, not saved" in sheet.evaluate(HEAD)
+
+
+def test_a_double_click_saves_once(sheet: Page, scene: Path) -> None:
+    replace(sheet, "rail, pitch", "my rail, pitch")
+    sheet.get_by_role("button", name="save", exact=True).dblclick()
+    wait_until(sheet, f"{HEAD}.includes('as in the file')")
+    sheet.wait_for_timeout(300)
+    assert sheet.evaluate(NEWS) == ""
+    assert scene.read_text(encoding="utf-8") == text_of(sheet)
+
+
+def test_a_page_that_begins_with_values_of_the_command_knows_the_file_that_it_would_overwrite(
+    watched: Any, scene: Path
+) -> None:
+    """As one does that is loaded anew, after a save."""
+    with served(scene, ("friction.coefficient=0.3",)) as server:
+        page = opened(watched, server)
+        assert "edited, not saved" in page.evaluate(HEAD)
+        page.wait_for_timeout(1200)
+        assert page.evaluate(NEWS) == ""
+        scene.write_text(TEXT + "# saved\n", encoding="utf-8")
+        page = opened(watched, server)
+        page.get_by_role("button", name="take the file's text").click()
+        assert text_of(page) == TEXT + "# saved\n"
 
 
 def test_save_as_makes_another_file_or_a_download(watched: Any, sheet: Page, scene: Path, tmp_path: Path) -> None:

@@ -69,10 +69,11 @@ class Desk:
         """
         self._path, self._source, self._can_edit = Path(path), os.fspath(path), can_edit
         changes = set_values if method is None else (*set_values, f"method={method}")
-        self._version = _version(self._content()) if can_edit and not changes else None
+        self._version = _version(self._content())
         self._scene_text_of = lru_cache(TEXTS_KEPT)(self._read)
         self._what_if_of = lru_cache(TEXTS_KEPT)(self._made)
-        self._start = edited(read_scene_text(path), changes).text
+        saved = read_scene_text(path)
+        self._saved, self._start = saved.text, edited(saved, changes).text
         self._asked({})
         self._writing = Lock()
         self.answers: dict[str, Callable[[Question], dict[str, Any]]] = {"/run": self._run, "/pull": self._pull}
@@ -88,7 +89,8 @@ class Desk:
         }
         if not self._can_edit:
             return content
-        return {**content, "edit": {"name": self._path.name, "version": self._version, "schema": scene_json_schema()}}
+        file = {"name": self._path.name, "version": self._version, "saved": _with_plain_ends(self._saved)}
+        return {**content, "edit": {**file, "schema": scene_json_schema()}}
 
     def refusal(self, error: Exception) -> dict[str, Any]:
         """Return what is wrong, for people who look at sliders or at the text; and where in the text."""

@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources 41d921db992f694a1a3eb4541a8d4397a8439d396ec50ae515fddb41f5854aae).
+// Built by `make page` from page/ (sources 1d60e5612a0c22e35757ac0d12cd7c3564584e01655cb2608ac3bf7a6d303ceb).
 /*! Contains parts of three:
 The MIT License
 
