@@ -335,6 +335,16 @@ def test_save_as_makes_another_file_or_a_download(watched: Any, sheet: Page, sce
     assert (tmp_path / "downloaded.yaml").read_text(encoding="utf-8") == mine
 
 
+def test_save_as_scene_downloads_the_text_as_it_is_typed(sheet: Page, tmp_path: Path) -> None:
+    """Before it was run, too, and where it cannot be."""
+    sheet.evaluate("() => { window.setTimeout = ((wait) => (act, ms) => wait(act, ms > 100 ? 1e9 : ms))(setTimeout); }")
+    replace(sheet, "rail, pitch", "my rail, pitch")
+    with sheet.expect_download() as download:
+        sheet.get_by_role("button", name="save as scene").click()
+    download.value.save_as(tmp_path / "downloaded.yaml")
+    assert (tmp_path / "downloaded.yaml").read_text(encoding="utf-8") == TEXT.replace("name: rail", "name: my rail")
+
+
 def test_markup_in_a_text_stays_text(watched: Any, scene: Path) -> None:
     bad = "<img src=x onerror=alert(1)></script><script>alert(2)</script>"
     scene.write_text(TEXT.replace("rail, pitch 0.1 deg", f"'{bad}'"), encoding="utf-8")

@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources 1d60e5612a0c22e35757ac0d12cd7c3564584e01655cb2608ac3bf7a6d303ceb).
+// Built by `make page` from page/ (sources 3dd0ff3cb36c7406675ed3985b4d99df98562afb7a5da4eb19d2572270125cd3).
 /*! Contains parts of @codemirror/autocomplete, @codemirror/commands, @codemirror/language, @codemirror/lint, @codemirror/state, @codemirror/streamparser, @codemirror/view:
 MIT License
 
