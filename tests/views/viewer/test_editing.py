@@ -183,6 +183,18 @@ def test_any_number_gets_a_slider_that_writes_into_the_text(sheet: Page) -> None
     assert text_of(sheet) == TEXT.replace("- [-91.5, -31.55, -1]", "- [-90, -31.55, -1]", 1)
 
 
+def test_a_slider_finds_its_number_behind_the_mark_of_a_document(watched: Any, scene: Path) -> None:
+    scene.write_text(f"# a rail\n---\n{TEXT}", encoding="utf-8")
+    with served(scene) as server:
+        page = opened(watched, server)
+        page.locator("#edittext").click()
+        put_cursor(page, "-91.5, -31.55, -1]")
+        page.get_by_role("button", name="slider", exact=True).click()
+        replace(page, "-91.5, -31.55", "-90, -31.55")
+        label = "of the text: cage.points[0][0]"
+        wait_until(page, f"document.querySelector('[aria-label=\"{label}\"][type=number]')?.value === '-90'")
+
+
 def test_alt_click_gives_a_slider_and_a_number_that_has_one_gets_no_second(sheet: Page) -> None:
     n_sliders = sheet.locator("#controls input[type=range]").count()
     put_cursor(sheet, "100, 0, -20]")

@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources 3dd0ff3cb36c7406675ed3985b4d99df98562afb7a5da4eb19d2572270125cd3).
+// Built by `make page` from page/ (sources 093a81b2ee3e9355e25875d1528379d32d8bb4a80916454fa1691e8ec04c353f).
 /*! Contains parts of three:
 The MIT License
 
