@@ -145,18 +145,20 @@ class Sheet {
     if (number) this.replace(`${this.text.slice(0, number.from)}${value}${this.text.slice(number.to)}`);
   }
 
-  addSlider() {
+  async addSlider() {
     const number = this.writing.numberHere();
     const key = number && keyPath(number.path);
     if (!number || this.panel.goTo(key)) return;
-    this.chosen.push(this.control(key, number.path, number.value));
-    this.showSliders();
+    this.chosen = [...this.chosen.filter((one) => one.key !== key), this.control(key, number.path, number.value)];
+    await this.showSliders();
     this.panel.goTo(key);
   }
 
-  showSliders() {
+  // What other sliders have said stands in the text once it is answered.
+  async showSliders() {
+    await this.panel.asker.settled();
     this.panel.edit(this.text);
-    this.panel.addMine([...this.chosen]);
+    this.panel.addMine(this.controls());
   }
 
   control(key, path, value) {

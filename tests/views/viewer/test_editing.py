@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from playwright.sync_api import Page
 
 from cagepose import load_scene, run
 from cagepose.files.scene_file import parse_scene
+from cagepose.views.viewer import what_if
 from cagepose.views.viewer.page import page as page_text
 from cagepose.views.viewer.playback import playback
 from cagepose.views.viewer.server import ViewServer
@@ -193,6 +195,22 @@ def test_a_slider_finds_its_number_behind_the_mark_of_a_document(watched: Any, s
         replace(page, "-91.5, -31.55", "-90, -31.55")
         label = "of the text: cage.points[0][0]"
         wait_until(page, f"document.querySelector('[aria-label=\"{label}\"][type=number]')?.value === '-90'")
+
+
+def test_a_slider_that_is_added_while_another_one_is_run_leaves_that_its_value(
+    sheet: Page, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(what_if, "run", lambda scene: (time.sleep(0.5), run(scene))[1])
+    put_cursor(sheet, "-91.5, -31.55, -1]")
+    sheet.get_by_label("cage: pitch", exact=True).last.fill("0.25")
+    sheet.get_by_role("button", name="slider", exact=True).click()
+    label = "of the text: cage.points[0][0]"
+    wait_until(sheet, f"document.activeElement.ariaLabel === '{label}'")
+    slide(sheet, label, -90)
+    written = text_of(sheet)
+    assert "euler_zyx_deg: [0, 0.25, 0]} # the misalignment" in written
+    assert "- [-90, -31.55, -1]" in written
+    assert shown_angles(sheet) == pytest.approx(expected_angles(written), abs=1e-5)
 
 
 def test_alt_click_gives_a_slider_and_a_number_that_has_one_gets_no_second(sheet: Page) -> None:

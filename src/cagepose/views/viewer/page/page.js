@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources 093a81b2ee3e9355e25875d1528379d32d8bb4a80916454fa1691e8ec04c353f).
+// Built by `make page` from page/ (sources 780a0161da269f76d8412f8289912c37f65224a4272d6493ebab846ff2e6e2bd).
 /*! Contains parts of three:
 The MIT License
 
