@@ -210,15 +210,14 @@ function fill() {
   plot.fit(data);
   $("name").textContent = data.name;
   $("phases").replaceChildren(...data.phases.map(({ name, verdict, verdictKind, isUnstable, last }, index) => {
-    const isLast = index === data.phases.length - 1; // its verdict is that of the run
-    const button = element("button", `${name} `), word = element("span", verdict, isLast ? data.verdictKind : verdictKind);
-    if (isLast) word.id = "verdict";
+    const button = element("button", `${name} `), word = element("span", verdict, verdictKind);
+    if (index === data.phases.length - 1) word.id = "verdict"; // of the run
     button.append(word, isUnstable ? ", unstable" : "");
     button.addEventListener("click", () => { pause(); seek(last); });
     return button;
   }));
   $("contradicted").textContent = data.contradicted;
-  $("contradicted").className = data.verdictKind;
+  $("contradicted").className = data.phases.at(-1).verdictKind;
   $("method").textContent = `${data.method}, solved in ${data.solve}`;
   $("events").tBodies[0].replaceChildren();
   data.rows.forEach((row, index) => {

@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources 780a0161da269f76d8412f8289912c37f65224a4272d6493ebab846ff2e6e2bd).
+// Built by `make page` from page/ (sources ff2e912b6a5ec21a269709b965621eb557c391d284c0d65888611084fef2c750).
 /*! Contains parts of @codemirror/autocomplete, @codemirror/commands, @codemirror/language, @codemirror/lint, @codemirror/state, @codemirror/streamparser, @codemirror/view:
 MIT License
 
