@@ -326,7 +326,7 @@ function wideRow(text) {
 }
 
 function forceRows(shot) {
-  const { greatestForce, forceUnit } = data.phases[shot.phase];
+  const { greatestForce, forceUnit, forceNotes } = data.phases[shot.phase];
   $("forceunit").textContent = "";
   if (!shot.touches.some((touch) => touch.force)) return [wideRow(whyNoForces(shot))];
   const loaded = shot.touches.filter((touch) => norm(touch.force) > data.look.least_force * greatestForce);
@@ -344,7 +344,7 @@ function forceRows(shot) {
     line.append(element("td", stage.naming(touch, loaded)), element("td", touch.words), cell);
     return line;
   });
-  return idle ? [...lines, wideRow(`${idle} more without a force`)] : lines;
+  return [...lines, ...forceNotes.map((note) => wideRow(note)), ...(idle ? [wideRow(`${idle} more without a force`)] : [])];
 }
 
 const toggle = () => (player.playing ? pause() : play());

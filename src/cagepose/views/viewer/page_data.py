@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cagepose.files.units import from_metres
-from cagepose.files.words import LengthWords, force_words
+from cagepose.files.words import LengthWords, force_notes, force_words
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
@@ -103,6 +103,7 @@ class _Writer:
                     "note": phase_note(self.shown, phase),
                     "loads": [self._load(act) for act in acts],
                     "greatestForce": self.greatest_forces[index],
+                    "forceNotes": force_notes(phase),
                     "forceUnit": force_unit(run.scene, run.scene.loads[index]),
                     "drive": drive_data(run, index, self.shown.length_unit),
                 }

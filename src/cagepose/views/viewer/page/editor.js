@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources ff2e912b6a5ec21a269709b965621eb557c391d284c0d65888611084fef2c750).
+// Built by `make page` from page/ (sources f0dfdb9284ddebb3a7644157cef1c88fc721663c379d7630d70147389027d4ea).
 /*! Contains parts of @codemirror/autocomplete, @codemirror/commands, @codemirror/language, @codemirror/lint, @codemirror/state, @codemirror/streamparser, @codemirror/view:
 MIT License
 
