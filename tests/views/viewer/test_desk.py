@@ -103,6 +103,19 @@ def test_a_number_of_the_start_and_a_moved_cage_hold_both(server: ViewServer) ->
     assert (start * 1e3).tolist() == pytest.approx([0.0, 5.0, 0.3], abs=1e-12)
 
 
+def test_expressions_stay_where_another_component_is_changed(tmp_path: Path) -> None:
+    text = PLATE.replace("loads:", "parameters: {tilt: 0.5}\nloads:").replace(
+        "{points: {file: points.csv}}",
+        '{points: [[5, 0, 0], [-5, 4, 0], [-5, -4, 0]], pose: {euler_zyx_deg: [0, "=tilt", 0]}}',
+    )
+    (tmp_path / "plate.yaml").write_text(text, encoding="utf-8")
+    desk = Desk(tmp_path / "plate.yaml")
+    told = desk.answers["/run"]({"values": {"cage.pose.euler_zyx_deg": [0.2, 0.5, 0]}})["text"]
+    assert 'pose: {euler_zyx_deg: [0.2, "=tilt", 0]}' in told
+    told = desk.answers["/run"]({"values": {"cage.pose.euler_zyx_deg": [0, 0.6, 0]}})["text"]
+    assert "euler_zyx_deg: [0, 0.6, 0]" in told
+
+
 def test_the_file_is_sent_again_only_when_it_was_changed(server: ViewServer, scene: Path) -> None:
     first = ask(server, "/file", {"version": None})[1]
     assert first["text"] == TEXT

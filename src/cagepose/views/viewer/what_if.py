@@ -135,10 +135,21 @@ class WhatIf:
                 raise ValueError(f"{key} is no number, no word and no list of numbers")
             if key == START:
                 continue
-            changes[key] = {"coefficient": value, **self._friction_of} if key == "friction" else value
+            changes |= self._differing(key, {"coefficient": value, **self._friction_of} if key == "friction" else value)
         moves = any(key == START or key.startswith(CAGE_POSE) for key in values)
         start = self._start(values) if moves else None
         return changes if start is None else {**changes, OBJECT_POSE: start}
+
+    def _differing(self, key: str, value: object) -> dict[str, object]:
+        """Return what makes a value of it, by its key; of a list that is there, what differs: an expression of another
+        component stays.
+        """
+        data = evaluated(self._text.yaml.data)[0]
+        there = value_at(data, resolved(data, parse_key_path(key)))
+        if not (isinstance(value, list) and isinstance(there, list) and len(value) == len(there)):
+            return {key: value}
+        pairs = enumerate(zip(value, there, strict=True))
+        return {f"{key}[{index}]": new for index, (new, old) in pairs if new != old}
 
     def _at(self, key: object) -> object:
         """Return what stands at a key of the text; None: nothing does."""
