@@ -50,6 +50,7 @@ class Sheet {
   }
 
   toggle(isOpen) {
+    if (isOpen !== this.section.hidden) return; // it is so already, and the view stays
     this.section.hidden = !isOpen;
     this.opener.setAttribute("aria-pressed", String(isOpen));
     document.body.classList.toggle("editing", isOpen);

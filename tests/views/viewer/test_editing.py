@@ -319,6 +319,16 @@ def test_a_question_is_withdrawn_where_the_file_is_as_it_was(sheet: Page, scene:
     assert "edited, not saved" in sheet.evaluate(HEAD)
 
 
+def test_a_question_leaves_the_view_as_it_is(sheet: Page, scene: Path) -> None:
+    replace(sheet, "rail, pitch", "my rail, pitch")
+    sheet.locator("#scene").hover()
+    sheet.mouse.wheel(0, -600)
+    half = state(sheet)["camera"]["half"]
+    scene.write_text(TEXT + "# theirs\n", encoding="utf-8")
+    sheet.get_by_role("button", name="keep mine").wait_for()
+    assert state(sheet)["camera"]["half"] == half
+
+
 def test_a_double_click_saves_once(sheet: Page, scene: Path) -> None:
     replace(sheet, "rail, pitch", "my rail, pitch")
     sheet.get_by_role("button", name="save", exact=True).dblclick()

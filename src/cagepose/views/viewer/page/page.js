@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources f0dfdb9284ddebb3a7644157cef1c88fc721663c379d7630d70147389027d4ea).
+// Built by `make page` from page/ (sources f89571d9c7639bb66c6df120a8a74ad2a41a8cc0ba6f488ad0765d99a51c7385).
 /*! Contains parts of three:
 The MIT License
 
