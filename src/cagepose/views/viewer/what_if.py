@@ -65,6 +65,7 @@ class WhatIf:
         of = value_at(self._text.yaml.data, ("friction", "of"))
         self._friction_of = {"of": of} if of else {}
         self._scene_file = self._text.scene_file()
+        self._evaluated = evaluated(self._text.yaml.data)[0]
         self.controls: list[Control] = controls(self._text)
         self._ran = lru_cache(RUNS_KEPT)(self._run)
 
@@ -144,8 +145,7 @@ class WhatIf:
         """Return what makes a value of it, by its key; of a list that is there, what differs: an expression of another
         component stays.
         """
-        data = evaluated(self._text.yaml.data)[0]
-        there = value_at(data, resolved(data, parse_key_path(key)))
+        there = value_at(self._evaluated, resolved(self._evaluated, parse_key_path(key)))
         if not (isinstance(value, list) and isinstance(there, list) and len(value) == len(there)):
             return {key: value}
         pairs = enumerate(zip(value, there, strict=True))
