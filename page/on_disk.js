@@ -8,9 +8,10 @@ const LOOK_MS = 1000; // between two looks at the file
 const GONE = "The viewer's server does not answer; start cagepose view again.";
 
 export class OnDisk {
-  // `version` is that of the file with `text`; null: neither is known yet.
+  // `version` is that of the file with `text`, which this page goes on from. `offered` is that of another text of it, while
+  // somebody is asked which one to keep.
   constructor(sheet, name, version, text) {
-    Object.assign(this, { sheet, name, version, text: version && text });
+    Object.assign(this, { sheet, name, version, text, offered: null });
     this.news = element("div", "", "news");
     this.news.setAttribute("role", "alert");
     this.news.hidden = true;
@@ -48,45 +49,59 @@ export class OnDisk {
     }
     if (this.isGone) this.tell("");
     this.isGone = false;
-    if (found.text === undefined) return;
-    const isEdited = known === null || this.sheet.isUnsaved; // known from the start, but for values that the command has set
-    Object.assign(this, { version: found.version, text: found.text });
-    if (!isEdited) this.takeFile();
-    else if (found.text === this.sheet.text) this.tell("");
-    else if (known !== null) this.askWhich();
+    if (found.text === undefined) this.withdraw();
+    else if (found.text === this.sheet.text) this.goOnFrom(found);
+    else if (!this.sheet.isUnsaved) this.take(found);
+    else if (found.version !== this.offered) this.askWhich(found);
+  }
+
+  // The text of the file is this one now, whatever stands here.
+  goOnFrom({ version, text }) {
+    Object.assign(this, { version, text, offered: null });
+    this.tell("");
     this.sheet.tellState();
   }
 
-  takeFile() {
-    this.tell("");
-    this.sheet.begun = this.text;
-    this.sheet.replace(this.text);
+  take(found) {
+    this.goOnFrom(found);
+    this.sheet.begun = found.text;
+    this.sheet.replace(found.text);
   }
 
-  askWhich() {
+  // Until somebody has chosen, this page goes on from the text that it knew, so that nothing can be saved over the other one.
+  askWhich(found) {
+    this.offered = found.version;
     this.sheet.toggle(true);
     this.tell(`${this.name} was changed on disk, and you have edits here that are not saved.`,
-      button("take the file's text", "yours can be had back by undo", () => this.takeFile()),
-      button("keep mine", "the file stays as it is until you save", () => this.tell("")));
+      button("take the file's text", "yours can be had back by undo", () => this.take(found)),
+      button("keep mine", "the file stays as it is until you save", () => this.goOnFrom(found)));
+  }
+
+  // The file is again as this page knows it.
+  withdraw() {
+    if (this.offered) this.tell("");
+    this.offered = null;
   }
 
   async save() {
+    if (this.isSaving) return; // a second click
     this.isSaving = true;
     const text = this.sheet.text;
     try {
       const response = await post("save", { text, version: this.version });
       const answer = await response.json();
       if (response.ok) {
-        Object.assign(this, { version: answer.version, text });
+        this.goOnFrom({ version: answer.version, text });
         this.sheet.begun = text;
-        this.tell("");
-      } else this.tell(answer.problems.join(" "));
+      } else {
+        this.offered = null; // what to do about it is asked again
+        this.tell(answer.problems.join(" "));
+      }
     } catch {
       this.tell(GONE);
     } finally {
       this.isSaving = false;
     }
-    this.sheet.tellState();
   }
 
   askName() {

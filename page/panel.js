@@ -97,7 +97,7 @@ export class Panel {
 
   // The text is another one now, in which all stands that controls have said.
   edit(text) {
-    this.base = text;
+    this.base = this.text = text;
     this.start = [0, 0, 0];
     this.controls.forEach((control, which) => { control.value = this.values[which]; });
   }

@@ -210,15 +210,14 @@ function fill() {
   plot.fit(data);
   $("name").textContent = data.name;
   $("phases").replaceChildren(...data.phases.map(({ name, verdict, verdictKind, isUnstable, last }, index) => {
-    const isLast = index === data.phases.length - 1; // its verdict is that of the run
-    const button = element("button", `${name} `), word = element("span", verdict, isLast ? data.verdictKind : verdictKind);
-    if (isLast) word.id = "verdict";
+    const button = element("button", `${name} `), word = element("span", verdict, verdictKind);
+    if (index === data.phases.length - 1) word.id = "verdict"; // of the run
     button.append(word, isUnstable ? ", unstable" : "");
     button.addEventListener("click", () => { pause(); seek(last); });
     return button;
   }));
   $("contradicted").textContent = data.contradicted;
-  $("contradicted").className = data.verdictKind;
+  $("contradicted").className = data.phases.at(-1).verdictKind;
   $("method").textContent = `${data.method}, solved in ${data.solve}`;
   $("events").tBodies[0].replaceChildren();
   data.rows.forEach((row, index) => {
@@ -327,7 +326,7 @@ function wideRow(text) {
 }
 
 function forceRows(shot) {
-  const { greatestForce, forceUnit } = data.phases[shot.phase];
+  const { greatestForce, forceUnit, forceNotes } = data.phases[shot.phase];
   $("forceunit").textContent = "";
   if (!shot.touches.some((touch) => touch.force)) return [wideRow(whyNoForces(shot))];
   const loaded = shot.touches.filter((touch) => norm(touch.force) > data.look.least_force * greatestForce);
@@ -345,7 +344,7 @@ function forceRows(shot) {
     line.append(element("td", stage.naming(touch, loaded)), element("td", touch.words), cell);
     return line;
   });
-  return idle ? [...lines, wideRow(`${idle} more without a force`)] : lines;
+  return [...lines, ...forceNotes.map((note) => wideRow(note)), ...(idle ? [wideRow(`${idle} more without a force`)] : [])];
 }
 
 const toggle = () => (player.playing ? pause() : play());

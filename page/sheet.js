@@ -14,9 +14,9 @@ const keyPath = (path) => path.reduce((text, key) => (typeof key === "number" ? 
 
 class Sheet {
   // `changedSize()` is called when the picture has more room, or less.
-  constructor({ name, schema, version, beside }, panel, changedSize) {
+  constructor({ name, schema, version, saved, beside }, panel, changedSize) {
     Object.assign(this, { name, beside, panel, changedSize, chosen: [], begun: panel.text });
-    this.onDisk = new OnDisk(this, name, version, panel.text);
+    this.onDisk = new OnDisk(this, name, version, saved);
     this.build();
     this.writing = new Writing(this.room, panel.text, schema, { typed: (isNow) => this.typed(isNow), moved: () => this.tellNumber(), altClicked: () => this.addSlider() });
     this.varied = new Varied(this.study, { text: () => this.text, seen: (path, value) => this.write(path, value) });
@@ -50,6 +50,7 @@ class Sheet {
   }
 
   toggle(isOpen) {
+    if (isOpen !== this.section.hidden) return; // it is so already, and the view stays
     this.section.hidden = !isOpen;
     this.opener.setAttribute("aria-pressed", String(isOpen));
     document.body.classList.toggle("editing", isOpen);
@@ -62,7 +63,7 @@ class Sheet {
   }
 
   get isUnsaved() {
-    return this.onDisk.text !== null && this.text !== this.onDisk.text;
+    return this.text !== this.onDisk.text;
   }
 
   // The text was edited by hand: it is run when nothing is typed any more, or now.
@@ -122,7 +123,7 @@ class Sheet {
   }
 
   tellState() {
-    this.state.textContent = this.onDisk.text === null ? "" : this.isUnsaved ? "edited, not saved" : "as in the file";
+    this.state.textContent = this.isUnsaved ? "edited, not saved" : "as in the file";
     this.saveButton.disabled = !this.isUnsaved;
   }
 
@@ -145,18 +146,20 @@ class Sheet {
     if (number) this.replace(`${this.text.slice(0, number.from)}${value}${this.text.slice(number.to)}`);
   }
 
-  addSlider() {
+  async addSlider() {
     const number = this.writing.numberHere();
     const key = number && keyPath(number.path);
     if (!number || this.panel.goTo(key)) return;
-    this.chosen.push(this.control(key, number.path, number.value));
-    this.showSliders();
+    this.chosen = [...this.chosen.filter((one) => one.key !== key), this.control(key, number.path, number.value)];
+    await this.showSliders();
     this.panel.goTo(key);
   }
 
-  showSliders() {
+  // What other sliders have said stands in the text once it is answered.
+  async showSliders() {
+    await this.panel.asker.settled();
     this.panel.edit(this.text);
-    this.panel.addMine([...this.chosen]);
+    this.panel.addMine(this.controls());
   }
 
   control(key, path, value) {

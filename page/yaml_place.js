@@ -48,9 +48,9 @@ export function numberAt(tree, text, position) {
 
 // The number that a path leads to; null: there is none.
 export function numberOf(tree, text, path) {
-  let node = tree.topNode.getChild("Document")?.firstChild;
+  const document = tree.topNode.getChild("Document");
+  let node = document && [...children(document)].find((child) => isMapping(child) || isList(child)); // behind --- and comments
   for (const key of path) {
-    while (node && node.name === "Comment") node = node.nextSibling;
     if (!node) return null;
     if (isList(node)) node = items(node)[key];
     else if (isMapping(node)) node = node.getChildren("Pair").find((pair) => { const of = pair.getChild("Key"); return of && words(text.slice(of.from, of.to)) === String(key); });

@@ -36,11 +36,11 @@ def free_port() -> int:
 
 
 @contextmanager
-def served(scene_path: Path, *, can_change: bool = True) -> Iterator[ViewServer]:
+def served(scene_path: Path, set_values: tuple[str, ...] = (), *, can_change: bool = True) -> Iterator[ViewServer]:
     """A server in this process, with or without controls."""
     text = read_scene_text(scene_path)
-    scene_file = text.scene_file()
-    desk = Desk(scene_path) if can_change else None
+    scene_file = text.scene_file(set_values)
+    desk = Desk(scene_path, set_values) if can_change else None
     film = playback(run(scene_file.scene), scene_file.length_unit)
     with open_server(page_text(film, desk), desk, HOST, free_port()) as server:
         threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True).start()

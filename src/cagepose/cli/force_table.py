@@ -10,7 +10,7 @@ from rich.text import Text
 
 from cagepose.cli.console import fits
 from cagepose.cli.styles import plain_table
-from cagepose.files.words import LengthWords, force_words, names_of
+from cagepose.files.words import LengthWords, force_notes, force_words
 from cagepose.model.wording import number_of
 from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.run import Contact, PhaseRun, Run
@@ -19,7 +19,6 @@ MOST_ROWS = 30
 """A table has at most so many contacts, those with the greatest forces; ``--verbose`` prints all."""
 APART, NO_FORCE = "", "0"
 """What stands for a contact that is none at the end of a phase, and for one that bears nothing."""
-PRESSED = "forces of the load alone; the drive can add forces of any size"
 
 
 def force_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -> list[RenderableType]:
@@ -32,14 +31,7 @@ def force_table(run: Run, words: LengthWords, width: int, *, is_verbose: bool) -
     shown_words = words if is_verbose else None
     whole = _table(run, phases, shown_words)
     tables = [whole] if fits(whole, width) else [_table(run, [phase], shown_words) for phase in phases]
-    shares = [
-        Text(
-            f"{phase.name}: statically indeterminate, one of many solutions is shown for {names_of(phase.proof.shared)}"
-        )
-        for phase in phases
-        if phase.proof.shared
-    ]
-    shares += [Text(f"{phase.name}: {PRESSED}") for phase in phases if phase.verdict in ("blocked", "jams")]
+    shares = [Text(f"{phase.name}: {note}") for phase in phases for note in force_notes(phase)]
     parts: list[RenderableType] = []
     for table in tables:
         parts += [table, ""]

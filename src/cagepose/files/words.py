@@ -11,7 +11,7 @@ from cagepose.model.load import Load
 from cagepose.model.wording import components, short
 from cagepose.runs.changes import Seen
 from cagepose.runs.drives import way_of
-from cagepose.runs.run import Motion
+from cagepose.runs.run import Motion, PhaseRun
 
 SIDEWAYS_OF_NORMAL = 1e-9
 """Fraction of a normal force. A smaller force across it is rounding."""
@@ -68,6 +68,15 @@ def force_words(normal: float, tangential: float) -> str:
         return "0"
     beside = f" + {tangential:.4g} friction" if tangential > SIDEWAYS_OF_NORMAL * normal else ""
     return f"{normal:.4g}{beside}"
+
+
+def force_notes(phase: PhaseRun) -> list[str]:
+    """Return what has to be known of the contact forces that are told of the end of a phase."""
+    shared = phase.proof.shared
+    told = [f"statically indeterminate, one of many solutions is shown for {names_of(shared)}"] if shared else []
+    if phase.verdict in ("blocked", "jams"):
+        told.append("forces of the load alone; the drive can add forces of any size")
+    return told
 
 
 def line_of(motion: Motion | Seen) -> str:

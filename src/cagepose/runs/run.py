@@ -235,6 +235,11 @@ class PhaseRun:
         """The object's pose at the end of the phase."""
         return self.events[-1].pose_world_object if self.events else self.start_pose
 
+    @property
+    def is_contradicted(self) -> bool:
+        """Whether the paper's rules end at rest where no forces balance the load."""
+        return self.verdict == "stable" and self.proof.verdict == "moves"
+
 
 @dataclass(frozen=True, eq=False)
 class Frame:
@@ -321,8 +326,8 @@ class Run:
 
     @property
     def is_contradicted(self) -> bool:
-        """Whether the paper's rules end at rest where no forces balance the load."""
-        return self.verdict == "stable" and self.phases[-1].proof.verdict == "moves"
+        """Whether the last phase is."""
+        return self.phases[-1].is_contradicted
 
     @property
     def pose(self) -> Pose:

@@ -63,8 +63,13 @@ def _remark(axis: FloatArray, load: Load) -> str:
 
 
 def run_kind(run: Run) -> Kind:
-    """Return `verdict_kind` of a run, which is "elsewhere" where the mechanics contradicts a rest."""
-    return "elsewhere" if run.is_contradicted else verdict_kind(run.verdict)
+    """Return `phase_kind` of the last phase."""
+    return phase_kind(run.phases[-1])
+
+
+def phase_kind(phase: PhaseRun) -> Kind:
+    """Return `verdict_kind` of a phase, which is "elsewhere" where the mechanics contradicts a rest."""
+    return "elsewhere" if phase.is_contradicted else verdict_kind(phase.verdict)
 
 
 def verdict_kind(verdict: str) -> Kind:

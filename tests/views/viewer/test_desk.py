@@ -15,9 +15,18 @@ from cagepose.errors import SceneFileError
 from cagepose.files.scene_file import parse_scene
 from cagepose.views.viewer.editing import Desk
 from cagepose.views.viewer.server import ViewServer
+from cagepose.views.viewer.what_if import WhatIf
 from driving import served
 from our_scenes import SCENES
 
+PLATE = """\
+name: plate
+object:
+  boxes: [{size: [20, 20, 1]}]
+  pose: {position: [0, 0, 5]}
+cage: {points: {file: points.csv}}
+loads: [{name: weight, gravity: [0, 0, -1]}]
+"""
 TEXT = next(path for path in SCENES if path.stem == "rollers").read_text(encoding="utf-8")
 
 
@@ -94,6 +103,19 @@ def test_a_number_of_the_start_and_a_moved_cage_hold_both(server: ViewServer) ->
     assert (start * 1e3).tolist() == pytest.approx([0.0, 5.0, 0.3], abs=1e-12)
 
 
+def test_expressions_stay_where_another_component_is_changed(tmp_path: Path) -> None:
+    text = PLATE.replace("loads:", "parameters: {tilt: 0.5}\nloads:").replace(
+        "{points: {file: points.csv}}",
+        '{points: [[5, 0, 0], [-5, 4, 0], [-5, -4, 0]], pose: {euler_zyx_deg: [0, "=tilt", 0]}}',
+    )
+    (tmp_path / "plate.yaml").write_text(text, encoding="utf-8")
+    desk = Desk(tmp_path / "plate.yaml")
+    told = desk.answers["/run"]({"values": {"cage.pose.euler_zyx_deg": [0.2, 0.5, 0]}})["text"]
+    assert 'pose: {euler_zyx_deg: [0.2, "=tilt", 0]}' in told
+    told = desk.answers["/run"]({"values": {"cage.pose.euler_zyx_deg": [0, 0.6, 0]}})["text"]
+    assert "euler_zyx_deg: [0, 0.6, 0]" in told
+
+
 def test_the_file_is_sent_again_only_when_it_was_changed(server: ViewServer, scene: Path) -> None:
     first = ask(server, "/file", {"version": None})[1]
     assert first["text"] == TEXT
@@ -107,9 +129,7 @@ def test_the_file_is_sent_again_only_when_it_was_changed(server: ViewServer, sce
 def test_files_that_a_text_names_are_watched_and_read_anew(tmp_path: Path) -> None:
     points = tmp_path / "points.csv"
     points.write_text("5,0,0\n-5,4,0\n-5,-4,0\n", encoding="utf-8")
-    text = "name: plate\nobject:\n  boxes: [{size: [20, 20, 1]}]\n  pose: {position: [0, 0, 5]}\n"
-    text += "cage: {points: {file: points.csv}}\nloads: [{name: weight, gravity: [0, 0, -1]}]\n"
-    (tmp_path / "plate.yaml").write_text(text, encoding="utf-8")
+    (tmp_path / "plate.yaml").write_text(PLATE, encoding="utf-8")
     desk = Desk(tmp_path / "plate.yaml")
     answer = desk.answers["/run"]({})
     names, stamp = answer["beside"]["names"], answer["beside"]["stamp"]
@@ -120,6 +140,24 @@ def test_files_that_a_text_names_are_watched_and_read_anew(tmp_path: Path) -> No
     assert desk.answers["/run"]({})["shots"][-1]["origin"] == pytest.approx([0.0, 0.0, 2.0])
     with pytest.raises(ValueError, match="no list of names"):
         desk.answers["/file"]({"beside": [3]})
+
+
+def test_a_file_that_is_written_while_it_is_run_is_another_one_afterwards(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    points = tmp_path / "points.csv"
+    points.write_text("5,0,0\n-5,4,0\n-5,-4,0\n", encoding="utf-8")
+    (tmp_path / "plate.yaml").write_text(PLATE, encoding="utf-8")
+    desk, answer = Desk(tmp_path / "plate.yaml"), WhatIf.answer
+
+    def and_meanwhile(what_if: WhatIf, values: object) -> dict[str, Any]:
+        found = answer(what_if, values)
+        points.write_text("5,0,1.5\n-5,4,1.5\n-5,-4,1.5\n", encoding="utf-8")
+        return found
+
+    monkeypatch.setattr(WhatIf, "answer", and_meanwhile)
+    beside = desk.answers["/run"]({})["beside"]
+    assert desk.answers["/file"]({"beside": beside["names"]})["stamp"] != beside["stamp"]
 
 
 def test_saving_writes_the_file_and_refuses_where_it_was_changed_on_disk(server: ViewServer, scene: Path) -> None:
@@ -153,6 +191,13 @@ def test_line_ends_of_the_file_stay_as_they_are(tmp_path: Path) -> None:
     assert path.read_bytes() == (TEXT + "# a\n").replace("\n", "\r\n").encode()
 
 
+def test_single_returns_are_line_ends_to_the_page_too(tmp_path: Path) -> None:
+    """So the text that the page compares with the file's is the one that its editor shows."""
+    path = tmp_path / "returns.yaml"
+    path.write_bytes(TEXT.replace("\n", "\r").encode())
+    assert Desk(path).page_content()["text"] == TEXT
+
+
 def test_save_as_makes_a_new_file_in_the_same_folder_and_overwrites_none(server: ViewServer, scene: Path) -> None:
     assert ask(server, "/save-as", {"text": TEXT, "name": "other"}) == (200, {"name": "other.yaml"})
     assert (scene.parent / "other.yaml").read_text(encoding="utf-8") == TEXT
@@ -175,6 +220,32 @@ def test_save_as_makes_a_new_file_in_the_same_folder_and_overwrites_none(server:
         assert answer["problems"][0].startswith("not saved: "), name
     assert sorted(path.name for path in scene.parent.iterdir()) == ["other.yaml", "rollers.yaml"]
     assert (scene.parent / "other.yaml").read_text(encoding="utf-8") == TEXT
+
+
+@pytest.mark.parametrize(
+    "text", ["half a character: \ud800", "# " + 4 * 1024**2 * "x"], ids=["half a character", "too large"]
+)
+def test_of_a_text_that_no_file_can_hold_no_empty_file_is_left(server: ViewServer, scene: Path, text: str) -> None:
+    version = ask(server, "/file", {"version": None})[1]["version"]
+    for path in ("/save-as", "/save"):
+        assert ask(server, path, {"text": text, "name": "other", "version": version})[0] == 422
+    assert [path.name for path in scene.parent.iterdir()] == ["rollers.yaml"]
+    assert scene.read_text(encoding="utf-8") == TEXT
+
+
+def test_a_file_that_cannot_be_written_is_told_by_its_own_name(server: ViewServer) -> None:
+    name = 300 * "x"
+    problems = ask(server, "/save-as", {"text": TEXT, "name": name})[1]["problems"]
+    assert problems == [f"not saved: {name}.yaml cannot be written: File name too long"]
+
+
+def test_a_file_that_is_write_protected_stays_as_it_is(server: ViewServer, scene: Path) -> None:
+    scene.chmod(0o444)
+    version = ask(server, "/file", {"version": None})[1]["version"]
+    status, answer = ask(server, "/save", {"text": "x", "version": version})
+    assert status == 422
+    assert answer["problems"] == ["not saved: rollers.yaml is write-protected; save under another name"]
+    assert scene.read_text(encoding="utf-8") == TEXT
 
 
 def test_nobody_writes_by_another_name_or_without_json(server: ViewServer, scene: Path) -> None:

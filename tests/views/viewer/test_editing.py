@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from playwright.sync_api import Page
 
 from cagepose import load_scene, run
 from cagepose.files.scene_file import parse_scene
+from cagepose.views.viewer import what_if
 from cagepose.views.viewer.page import page as page_text
 from cagepose.views.viewer.playback import playback
 from cagepose.views.viewer.server import ViewServer
@@ -20,6 +22,8 @@ from our_scenes import SCENES
 
 RAIL = next(path for path in SCENES if path.stem == "rail-pitch")
 TEXT = RAIL.read_text(encoding="utf-8")
+
+HEAD, NEWS = ("document.querySelector('#text .head').textContent", "document.querySelector('#text .news').textContent")
 
 PLATE = """\
 name: plate
@@ -181,6 +185,34 @@ def test_any_number_gets_a_slider_that_writes_into_the_text(sheet: Page) -> None
     assert text_of(sheet) == TEXT.replace("- [-91.5, -31.55, -1]", "- [-90, -31.55, -1]", 1)
 
 
+def test_a_slider_finds_its_number_behind_the_mark_of_a_document(watched: Any, scene: Path) -> None:
+    scene.write_text(f"# a rail\n---\n{TEXT}", encoding="utf-8")
+    with served(scene) as server:
+        page = opened(watched, server)
+        page.locator("#edittext").click()
+        put_cursor(page, "-91.5, -31.55, -1]")
+        page.get_by_role("button", name="slider", exact=True).click()
+        replace(page, "-91.5, -31.55", "-90, -31.55")
+        label = "of the text: cage.points[0][0]"
+        wait_until(page, f"document.querySelector('[aria-label=\"{label}\"][type=number]')?.value === '-90'")
+
+
+def test_a_slider_that_is_added_while_another_one_is_run_leaves_that_its_value(
+    sheet: Page, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(what_if, "run", lambda scene: (time.sleep(0.5), run(scene))[1])
+    put_cursor(sheet, "-91.5, -31.55, -1]")
+    sheet.get_by_label("cage: pitch", exact=True).last.fill("0.25")
+    sheet.get_by_role("button", name="slider", exact=True).click()
+    label = "of the text: cage.points[0][0]"
+    wait_until(sheet, f"document.activeElement.ariaLabel === '{label}'")
+    slide(sheet, label, -90)
+    written = text_of(sheet)
+    assert "euler_zyx_deg: [0, 0.25, 0]} # the misalignment" in written
+    assert "- [-90, -31.55, -1]" in written
+    assert shown_angles(sheet) == pytest.approx(expected_angles(written), abs=1e-5)
+
+
 def test_alt_click_gives_a_slider_and_a_number_that_has_one_gets_no_second(sheet: Page) -> None:
     n_sliders = sheet.locator("#controls input[type=range]").count()
     put_cursor(sheet, "100, 0, -20]")
@@ -261,6 +293,66 @@ def test_a_save_from_outside_asks_where_there_are_edits_and_nothing_is_lost(shee
     assert scene.read_text(encoding="utf-8") == mine
 
 
+def test_nothing_is_saved_over_another_text_before_somebody_has_chosen(watched: Any, sheet: Page, scene: Path) -> None:
+    theirs, mine = TEXT + "# theirs\n", TEXT.replace("name: rail", "name: my rail")
+    replace(sheet, "rail, pitch", "my rail, pitch")
+    scene.write_text(theirs, encoding="utf-8")
+    keep = sheet.get_by_role("button", name="keep mine")
+    keep.wait_for()
+    with sheet.expect_response("**/save") as answer:
+        sheet.get_by_role("button", name="save", exact=True).click()
+    assert answer.value.status == 422
+    watched.complaints.clear()  # the browser notes the refusal itself
+    assert scene.read_text(encoding="utf-8") == theirs
+    keep.click()  # it is asked again
+    sheet.get_by_role("button", name="save", exact=True).click()
+    wait_until(sheet, f"{HEAD}.includes('as in the file')")
+    assert scene.read_text(encoding="utf-8") == mine
+
+
+def test_a_question_is_withdrawn_where_the_file_is_as_it_was(sheet: Page, scene: Path) -> None:
+    replace(sheet, "rail, pitch", "my rail, pitch")
+    scene.write_text(TEXT + "# theirs\n", encoding="utf-8")
+    sheet.get_by_role("button", name="keep mine").wait_for()
+    scene.write_text(TEXT, encoding="utf-8")
+    sheet.locator("#text .news").wait_for(state="hidden")
+    assert "edited, not saved" in sheet.evaluate(HEAD)
+
+
+def test_a_question_leaves_the_view_as_it_is(sheet: Page, scene: Path) -> None:
+    replace(sheet, "rail, pitch", "my rail, pitch")
+    sheet.locator("#scene").hover()
+    sheet.mouse.wheel(0, -600)
+    half = state(sheet)["camera"]["half"]
+    scene.write_text(TEXT + "# theirs\n", encoding="utf-8")
+    sheet.get_by_role("button", name="keep mine").wait_for()
+    assert state(sheet)["camera"]["half"] == half
+
+
+def test_a_double_click_saves_once(sheet: Page, scene: Path) -> None:
+    replace(sheet, "rail, pitch", "my rail, pitch")
+    sheet.get_by_role("button", name="save", exact=True).dblclick()
+    wait_until(sheet, f"{HEAD}.includes('as in the file')")
+    sheet.wait_for_timeout(300)
+    assert sheet.evaluate(NEWS) == ""
+    assert scene.read_text(encoding="utf-8") == text_of(sheet)
+
+
+def test_a_page_that_begins_with_values_of_the_command_knows_the_file_that_it_would_overwrite(
+    watched: Any, scene: Path
+) -> None:
+    """As one does that is loaded anew, after a save."""
+    with served(scene, ("friction.coefficient=0.3",)) as server:
+        page = opened(watched, server)
+        assert "edited, not saved" in page.evaluate(HEAD)
+        page.wait_for_timeout(1200)
+        assert page.evaluate(NEWS) == ""
+        scene.write_text(TEXT + "# saved\n", encoding="utf-8")
+        page = opened(watched, server)
+        page.get_by_role("button", name="take the file's text").click()
+        assert text_of(page) == TEXT + "# saved\n"
+
+
 def test_save_as_makes_another_file_or_a_download(watched: Any, sheet: Page, scene: Path, tmp_path: Path) -> None:
     replace(sheet, "rail, pitch", "my rail, pitch")
     mine = text_of(sheet)
@@ -281,6 +373,16 @@ def test_save_as_makes_another_file_or_a_download(watched: Any, sheet: Page, sce
         sheet.get_by_role("button", name="download").click()
     download.value.save_as(tmp_path / "downloaded.yaml")
     assert (tmp_path / "downloaded.yaml").read_text(encoding="utf-8") == mine
+
+
+def test_save_as_scene_downloads_the_text_as_it_is_typed(sheet: Page, tmp_path: Path) -> None:
+    """Before it was run, too, and where it cannot be."""
+    sheet.evaluate("() => { window.setTimeout = ((wait) => (act, ms) => wait(act, ms > 100 ? 1e9 : ms))(setTimeout); }")
+    replace(sheet, "rail, pitch", "my rail, pitch")
+    with sheet.expect_download() as download:
+        sheet.get_by_role("button", name="save as scene").click()
+    download.value.save_as(tmp_path / "downloaded.yaml")
+    assert (tmp_path / "downloaded.yaml").read_text(encoding="utf-8") == TEXT.replace("name: rail", "name: my rail")
 
 
 def test_markup_in_a_text_stays_text(watched: Any, scene: Path) -> None:

@@ -76,6 +76,16 @@ def test_the_list_and_the_arrows_have_the_numbers_of_the_commands_table(opened, 
     assert "72.93 N" in tab.locator("#cardlines").inner_text()
 
 
+@pytest.mark.parametrize(("name", "words"), [("rail-pitch", "indeterminate"), ("drawer-jams", "any size")])
+def test_what_the_command_says_of_the_forces_stands_below_the_list(opened, capsys, name, words):
+    assert main(["run", str(SCENES / f"{name}.yaml")]) in (0, 1)
+    shown, printed = film(name), " ".join(capsys.readouterr().out.split())
+    listed = opened(shown).locator("#forces tr:not(:has(td + td))").all_inner_texts()
+    notes = [line for line in listed if words in line]
+    assert len(notes) == 1
+    assert f"{shown.run.phases[-1].name}: {notes[0]}" in printed
+
+
 def test_shares_of_the_load_are_told_without_a_unit(opened):
     tab = opened(film("rail-pitch"))
     assert tab.locator("#forceunit").inner_text() == "parts of the load"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page
 
-from cagepose import load_scene, run
+from cagepose import Load, Scene, load_scene, run
 from cagepose.views.viewer.page import page
 from cagepose.views.viewer.playback import Playback, playback
 from driving import opened as opened_live
@@ -48,6 +48,19 @@ def test_each_phase_has_its_verdict_in_the_header_and_a_click_goes_to_its_end(op
     assert [button.get_attribute("aria-current") for button in phases.all()] == ["step", None]
     assert "weight: rests (unstable)" in tab.locator("#notes").inner_text()
     assert "push: rests" not in tab.locator("#notes").inner_text()
+
+
+def test_each_phase_that_the_mechanics_contradicts_has_the_colour_of_no_rest(opened):
+    """The cube of the sample tips on from where the paper's rules leave it, under its weight now and again."""
+    sample = load_scene(SCENES / "sample.yaml")
+    loads = [*sample.loads, Load("again", gravity=(0, 0, -1))]
+    found = run(Scene(sample.object, sample.cage, loads), "stepwise")
+    assert [phase.verdict for phase in found.phases] == ["stable", "stable"]
+    assert [phase.proof.verdict for phase in found.phases] == ["moves", "moves"]
+    tab = opened(playback(found, shots_per_motion=4))
+    assert [word.get_attribute("class") for word in tab.locator("#phases span").all()] == ["elsewhere", "elsewhere"]
+    assert tab.locator("#events td.elsewhere").count() == 2
+    assert tab.locator("#events td.rest").count() == 0
 
 
 @pytest.mark.parametrize("name", ["rail-pitch", "wedge", "sample", "grip"])

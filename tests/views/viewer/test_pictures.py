@@ -8,7 +8,7 @@ from pathlib import Path
 import av
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageDraw
 
 from cagepose import Cage, Cylinder, Force, Hole, Load, Object, Pose, Scene, load_scene, run
 from cagepose.files.write import MADE_BY
@@ -36,6 +36,22 @@ SCENES = Path(__file__).resolve().parents[3] / "scenes"
 
 def pixel(raster: Raster, x: int, y: int) -> list[float]:
     return (raster.colors[y, x] / 255.0).tolist()
+
+
+def test_a_rest_that_is_unstable_is_called_so_above_its_picture(monkeypatch):
+    rail = load_scene(SCENES / "rail-pitch.yaml")
+    found = run(Scene(rail.object, rail.cage, rail.loads[:1]))
+    assert found.phases[-1].proof.stability == "unstable"
+    words, write = [], ImageDraw.ImageDraw.text
+
+    def noted(pen, place, text, *rest, **told):
+        words.append(text)
+        write(pen, place, text, *rest, **told)
+
+    monkeypatch.setattr(ImageDraw.ImageDraw, "text", noted)
+    shown = playback(found)
+    PictureMaker(Stage(shown)).picture(shown.shots[-1])
+    assert "rests, unstable" in words
 
 
 def test_what_is_nearer_covers_what_is_farther_in_whatever_order_it_is_drawn():

@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 from cagepose.files.words import LengthWords
 from cagepose.runs.changes import mode_of
 from cagepose.runs.run import CONTRADICTED, Run
-from cagepose.studies.ending import Kind, run_kind
+from cagepose.studies.ending import Kind, ending, run_kind
 from cagepose.views.drive_words import share_words
 from cagepose.views.viewer.labels import Box, Pair, laid_out, leader
 from cagepose.views.viewer.look import PAPER
@@ -77,10 +77,10 @@ class Caption:
     def _write_head(self, pen: ImageDraw.ImageDraw, run: Run, shot: Shot) -> None:
         pen.text((14.0, 10.0), run.scene.name, TITLE_INK, self.large)
         across = 24.0 + pen.textlength(run.scene.name, self.large)
-        ink = VERDICT_INK[run_kind(run)]
-        pen.text((across, 10.0), run.verdict, ink, self.large)
+        ink, verdict = VERDICT_INK[run_kind(run)], ending(run)
+        pen.text((across, 10.0), verdict, ink, self.large)
         if run.is_contradicted:
-            across += 10.0 + pen.textlength(run.verdict, self.large)
+            across += 10.0 + pen.textlength(verdict, self.large)
             pen.text((across, 13.0), CONTRADICTED, ink, self.small)
         pen.text((14.0, 34.0), self._happening(run, shot), SOFT_INK, self.small)
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import os
+import stat
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from threading import Lock
-from typing import Any
+from typing import Any, NamedTuple
 
 from cagepose.errors import CageposeError, FileProblem, Problem, SceneFileError, printable
 from cagepose.files.files_named import files_named, stamp_of
@@ -22,6 +23,21 @@ from cagepose.views.viewer.what_if import WhatIf
 
 TEXTS_KEPT = 4
 Question = dict[str, Any]
+
+
+class _Asked(NamedTuple):
+    """What a question is about.
+
+    Attributes
+    ----------
+    what_if
+        Its text, to be run.
+    beside
+        Files that the text names, and their stamp before they were read: one that is written meanwhile is another one.
+    """
+
+    what_if: WhatIf
+    beside: dict[str, Any]
 
 
 class Desk:
@@ -53,11 +69,12 @@ class Desk:
         """
         self._path, self._source, self._can_edit = Path(path), os.fspath(path), can_edit
         changes = set_values if method is None else (*set_values, f"method={method}")
-        self._version = _version(self._content()) if can_edit and not changes else None
+        self._version = _version(self._content())
         self._scene_text_of = lru_cache(TEXTS_KEPT)(self._read)
         self._what_if_of = lru_cache(TEXTS_KEPT)(self._made)
-        self._start = edited(read_scene_text(path), changes).text
-        self._what_if({})
+        saved = read_scene_text(path)
+        self._saved, self._start = saved.text, edited(saved, changes).text
+        self._asked({})
         self._writing = Lock()
         self.answers: dict[str, Callable[[Question], dict[str, Any]]] = {"/run": self._run, "/pull": self._pull}
         if can_edit:
@@ -65,20 +82,18 @@ class Desk:
 
     def page_content(self) -> dict[str, Any]:
         """Return what a page needs to ask."""
-        start = self._what_if({})
         content = {
-            **self._told(start),
+            **self._told(self._asked({})),
             "fileName": f"{self._path.stem}-changed.yaml",
             "text": _with_plain_ends(self._start),
         }
         if not self._can_edit:
             return content
-        return {**content, "edit": {"name": self._path.name, "version": self._version, "schema": scene_json_schema()}}
+        file = {"name": self._path.name, "version": self._version, "saved": _with_plain_ends(self._saved)}
+        return {**content, "edit": {**file, "schema": scene_json_schema()}}
 
     def refusal(self, error: Exception) -> dict[str, Any]:
         """Return what is wrong, for people who look at sliders or at the text; and where in the text."""
-        if isinstance(error, OSError) and error.strerror:
-            return {"problems": [printable(f"{self._path.name} cannot be written: {error.strerror}")]}
         if not isinstance(error, SceneFileError):
             return {"problems": [printable(str(error))]}
         problems, mistakes = [], []
@@ -90,31 +105,29 @@ class Desk:
         return {"problems": problems, "mistakes": mistakes}
 
     def _run(self, asked: Question) -> dict[str, Any]:
-        what_if = self._what_if(asked)
-        found = what_if.answer(asked.get("values", {}))
+        about = self._asked(asked)
+        found = about.what_if.answer(asked.get("values", {}))
         found["text"] = _with_plain_ends(found["text"])
-        return {**found, **self._told(what_if)}
+        return {**found, **self._told(about)}
 
-    def _told(self, what_if: WhatIf) -> dict[str, Any]:
+    def _told(self, about: _Asked) -> dict[str, Any]:
         """What a page is told of a text beside its run: its controls, and the files that it names."""
-        names = _names(what_if.scene_text)
-        return {
-            "controls": [control.document() for control in what_if.controls],
-            "beside": {"names": names, "stamp": stamp_of(self._path.parent, names)},
-        }
+        return {"controls": [control.document() for control in about.what_if.controls], "beside": about.beside}
 
     def _pull(self, asked: Question) -> dict[str, Any]:
-        return self._what_if(asked).pulled(asked.get("values", {}), asked.get("pull"))
+        return self._asked(asked).what_if.pulled(asked.get("values", {}), asked.get("pull"))
 
     def _vary(self, asked: Question) -> dict[str, Any]:
-        return runs_with(self._what_if(asked).scene_text, asked.get("key"), asked.get("numbers"))
+        return runs_with(self._asked(asked).what_if.scene_text, asked.get("key"), asked.get("numbers"))
 
-    def _what_if(self, asked: Question) -> WhatIf:
+    def _asked(self, asked: Question) -> _Asked:
         is_start = asked.get("text") is None
         if not (is_start or self._can_edit):
             raise ValueError("the text cannot be changed from here; serve on this machine alone, without --host")
         text = self._start if is_start else _text(asked)
-        return self._what_if_of(text, stamp_of(self._path.parent, _names(self._scene_text_of(text))))
+        names = list(files_named(self._scene_text_of(text).yaml.data).values())
+        stamp = stamp_of(self._path.parent, names)
+        return _Asked(self._what_if_of(text, stamp), {"names": names, "stamp": stamp})
 
     def _read(self, text: str) -> SceneText:
         return scene_text_of(text, self._source)
@@ -157,13 +170,18 @@ class Desk:
                 raise ValueError(f"not saved: {name} was changed on disk since this page read it")
             content = _as_bytes(text, has_returns=b"\r\n" in before)
             mode = self._path.stat().st_mode
-            write_whole(self._path, content)
-            self._path.chmod(mode)
+            if not mode & stat.S_IWRITE:
+                raise ValueError(f"not saved: {name} is write-protected; save under another name")
+            try:
+                write_whole(self._path, content)
+                self._path.chmod(mode)
+            except OSError as error:
+                raise _not_written(name, error) from None
         return {"version": _version(content)}
 
     def _save_as(self, asked: Question) -> dict[str, Any]:
         """Write a new file beside this one."""
-        text, name = _text(asked), asked.get("name")
+        content, name = _as_bytes(_text(asked)), asked.get("name")
         if not isinstance(name, str) or not name.strip() or name != Path(name).name or "\\" in name or "\0" in name:
             raise ValueError("not saved: give the name of a file, without a folder")
         name = name.strip()
@@ -172,14 +190,12 @@ class Desk:
         name = name if name.endswith(SCENE_SUFFIXES) else f"{name}.yaml"
         try:
             with self._path.with_name(name).open("xb") as stream:
-                stream.write(_as_bytes(text))
+                stream.write(content)
         except FileExistsError:
             raise ValueError(f"not saved: {name} is there already; give another name") from None
+        except OSError as error:
+            raise _not_written(name, error) from None
         return {"name": name}
-
-
-def _names(scene_text: SceneText) -> list[str]:
-    return list(files_named(scene_text.yaml.data).values())
 
 
 def _text(asked: Question) -> str:
@@ -191,7 +207,7 @@ def _text(asked: Question) -> str:
 
 def _with_plain_ends(text: str) -> str:
     """Return a text with line ends as an editor in a browser has them."""
-    return text.replace("\r\n", "\n")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _as_bytes(text: str, *, has_returns: bool = False) -> bytes:
@@ -202,6 +218,10 @@ def _as_bytes(text: str, *, has_returns: bool = False) -> bytes:
     if len(content) > MAX_FILE_BYTES:
         raise ValueError(f"not saved: the text is larger than {MAX_FILE_BYTES // 1024**2} MiB")
     return content
+
+
+def _not_written(name: str, error: OSError) -> ValueError:
+    return ValueError(f"not saved: {name} cannot be written: {error.strerror or error}")
 
 
 def _version(content: bytes) -> str:

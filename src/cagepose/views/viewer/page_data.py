@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cagepose.files.units import from_metres
-from cagepose.files.words import LengthWords, force_words
+from cagepose.files.words import LengthWords, force_notes, force_words
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
@@ -25,7 +25,7 @@ from cagepose.runs.on_the_way import DRIVEN
 from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, STOPPED, PhaseRun
 from cagepose.studies.acts import Act
 from cagepose.studies.comparison import ENDS, same_pose
-from cagepose.studies.ending import run_kind, turned_far, verdict_kind
+from cagepose.studies.ending import phase_kind, turned_far
 from cagepose.views.drive_words import STOPS, along_drawn, drive_data, how_far, share_words
 from cagepose.views.solids import Solid, solid_of
 from cagepose.views.viewer import look
@@ -69,7 +69,6 @@ class _Writer:
             "name": run.scene.name,
             "method": run.method,
             "solve": duration(run.solve_s),
-            "verdictKind": run_kind(run),
             "contradicted": CONTRADICTED if run.is_contradicted else "",
             "turned": list(turned_far(run)),
             "unit": self.shown.length_unit,
@@ -99,11 +98,12 @@ class _Writer:
                     **view._asdict(),
                     "name": phase.name,
                     "verdict": phase.verdict,
-                    "verdictKind": verdict_kind(phase.verdict),
+                    "verdictKind": phase_kind(phase),
                     "isUnstable": phase.proof.stability == "unstable",
                     "note": phase_note(self.shown, phase),
                     "loads": [self._load(act) for act in acts],
                     "greatestForce": self.greatest_forces[index],
+                    "forceNotes": force_notes(phase),
                     "forceUnit": force_unit(run.scene, run.scene.loads[index]),
                     "drive": drive_data(run, index, self.shown.length_unit),
                 }
@@ -234,7 +234,7 @@ class _Writer:
             "left": list(change.left),
             "contacts": list(row.event.contacts),
             "verdict": row.verdict,
-            "verdictKind": None if row.verdict is None else verdict_kind(row.verdict),
+            "verdictKind": None if row.verdict is None else phase_kind(self.run.phases[row.phase]),
             "first": row.first_shot,
             "last": row.last_shot,
             "line": self._line(row),

@@ -65,6 +65,7 @@ class WhatIf:
         of = value_at(self._text.yaml.data, ("friction", "of"))
         self._friction_of = {"of": of} if of else {}
         self._scene_file = self._text.scene_file()
+        self._evaluated = evaluated(self._text.yaml.data)[0]
         self.controls: list[Control] = controls(self._text)
         self._ran = lru_cache(RUNS_KEPT)(self._run)
 
@@ -135,10 +136,20 @@ class WhatIf:
                 raise ValueError(f"{key} is no number, no word and no list of numbers")
             if key == START:
                 continue
-            changes[key] = {"coefficient": value, **self._friction_of} if key == "friction" else value
+            changes |= self._differing(key, {"coefficient": value, **self._friction_of} if key == "friction" else value)
         moves = any(key == START or key.startswith(CAGE_POSE) for key in values)
         start = self._start(values) if moves else None
         return changes if start is None else {**changes, OBJECT_POSE: start}
+
+    def _differing(self, key: str, value: object) -> dict[str, object]:
+        """Return what makes a value of it, by its key; of a list that is there, what differs: an expression of another
+        component stays.
+        """
+        there = value_at(self._evaluated, resolved(self._evaluated, parse_key_path(key)))
+        if not (isinstance(value, list) and isinstance(there, list) and len(value) == len(there)):
+            return {key: value}
+        pairs = enumerate(zip(value, there, strict=True))
+        return {f"{key}[{index}]": new for index, (new, old) in pairs if new != old}
 
     def _at(self, key: object) -> object:
         """Return what stands at a key of the text; None: nothing does."""
