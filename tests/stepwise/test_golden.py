@@ -21,13 +21,18 @@ TOLERANCE = 1e-9
 SOLVED = 1e-6
 """For what Newton's method found: forces with friction, and the motion that a proof shows."""
 
+SAMPLED = {"critical_jam_friction": 1e-4}
+"""By the key: the least over places on the way. Which places a run asks hangs on the processor's rounding: numbers
+differ by 2.3e-5 between one with AVX-512 and one without.
+"""
+
 
 def assert_same(found, expected, place="", tolerance=TOLERANCE):
     assert type(found) is type(expected), place
     if isinstance(expected, dict):
         assert found.keys() == expected.keys(), place
         for key in expected:
-            assert_same(found[key], expected[key], f"{place}.{key}", tolerance)
+            assert_same(found[key], expected[key], f"{place}.{key}", SAMPLED.get(key, tolerance))
     elif isinstance(expected, list):
         assert len(found) == len(expected), place
         if expected and all(isinstance(part, float) for part in expected):

@@ -70,7 +70,7 @@ def _jam(drive: DriveRun, load: Load, words: LengthWords) -> str:
     least = drive.critical_jam_friction
     if least is None:
         return "impossible at any friction, at all places checked"
-    friction = f"it takes a friction of {short(least, 6, 1e-9)} or more"
+    friction = f"it takes a friction of {short(least, 4, 1e-9)} or more"
     if not drive.jam_possible:
         return f"impossible at this friction, at all places checked ({friction})"
     ways = ", ".join(f"{words.depth(load, begins)} to {words.depth(load, ends)}" for begins, ends in drive.jam_possible)
