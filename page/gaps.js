@@ -6,6 +6,15 @@ import { $, element, gapWords } from "./words.js";
 const MOST = 6; // gaps that are told, unless something is picked
 const OTHER_WAY = -0.5; // cosine: of two parts, a second gap is told if it leads the other way, as in a slot
 
+const NUMBERS = 9; // of each gap: its foot, its place and its normal
+
+function numbersIn(base64) {
+  const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0)), view = new DataView(bytes.buffer);
+  return Float64Array.from({ length: bytes.length / 4 }, (_, i) => view.getFloat32(4 * i, true));
+}
+
+const triples = (numbers, first) => Array.from({ length: numbers.length / NUMBERS }, (_, i) => [...numbers.subarray(NUMBERS * i + first, NUMBERS * i + first + 3)]);
+
 export class Gaps {
   constructor(changed) {
     this.element = null; // of the cage, whose gaps are told; null: the narrowest ones of all
@@ -22,8 +31,10 @@ export class Gaps {
 
   take(data, stage) {
     Object.assign(this, { data, stage });
-    this.moments = new Map(data.clearances.map(({ shot, elements, parts, gaps, feet, places, normals }) =>
-      [shot, gaps.map((gap, i) => ({ point: elements[i], part: parts[i], gap, foot: feet[i], place: places[i], normal: normals[i], cage: stage.shots[shot].cage }))]));
+    this.moments = new Map(data.clearances.map(({ shot, elements, parts, gaps, where }) => {
+      const numbers = numbersIn(where), [feet, places, normals] = [0, 3, 6].map((first) => triples(numbers, first));
+      return [shot, gaps.map((gap, i) => ({ point: elements[i], part: parts[i], gap, foot: feet[i], place: places[i], normal: normals[i], cage: stage.shots[shot].cage }))];
+    }));
     if (this.element >= data.names.length) this.element = null;
   }
 

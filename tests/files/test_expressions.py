@@ -15,7 +15,7 @@ import pytest
 from cagepose import SceneFileError
 from cagepose.files.expression import Expression
 from cagepose.files.parameters import Expressions
-from cagepose.files.scene_file import parse_scene
+from cagepose.files.scene_file import parse_scene, scene_text_of
 
 SCENE = """\
 name: =sample
@@ -235,3 +235,13 @@ def test_an_expression_lets_its_rows_go_at_once(text: str) -> None:
         assert kept() is None
     finally:
         gc.enable()
+
+
+@pytest.mark.parametrize(("place", "number"), [(("object", "pose", "position", 1), 3.0), (("parameters", "top"), 12.0)])
+def test_a_number_in_the_place_of_an_expression_counts(place: tuple[str | int, ...], number: float) -> None:
+    text = scene_text_of(SCENE, "s.yaml")
+    position = text.scene_with({place: number}).scene.object.pose_world_object.position_m * 1e3
+    assert position.tolist() == pytest.approx([2, 3, 10] if place[0] == "object" else [2, 4, 12])
+    assert text.scene_with({}).scene.object.pose_world_object.position_m * 1e3 == pytest.approx([2, 4, 10])
+    whole = text.scene_with({("object", "pose"): {"position": [1.0, 2.0, 30.0]}}).scene
+    assert whole.object.pose_world_object.position_m * 1e3 == pytest.approx([1, 2, 30])

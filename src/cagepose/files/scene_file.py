@@ -143,8 +143,8 @@ class SceneText:
         problems.sort(key=_reading_order)
         raise SceneFileError(problems)
 
-    def scene_with(self, numbers: Mapping[KeyPath, float]) -> SceneFile:
-        """Return the scene with other numbers at some paths, for thousands of times: without places of what is wrong.
+    def scene_with(self, values: Mapping[KeyPath, object]) -> SceneFile:
+        """Return the scene with other values at some paths, for thousands of times: without places of what is wrong.
 
         Raises
         ------
@@ -152,9 +152,11 @@ class SceneText:
             Such a scene cannot be used.
         """
         data = deepcopy(self.yaml.data)
-        for path, number in numbers.items():
-            set_value(data, path, number)
-        attempt = _Attempt(data, self.folder, self._expressions)
+        changed = [set_value(data, path, value) for path, value in values.items()]
+        # An expression that gives way to a number is none any more.
+        known = self._expressions
+        is_kept = not any(where[: len(path)] == path for where in known.by_path for path in changed)
+        attempt = _Attempt(data, self.folder, known if is_kept else None)
         if attempt.scene_file is None:
             raise SceneError([*attempt.table_problems, *(finding.problem for finding in attempt.findings)])
         return attempt.scene_file

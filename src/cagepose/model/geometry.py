@@ -76,9 +76,7 @@ def cage_bodies(cage: Cage, touch_m: float) -> Bodies:
 def _boundary(parts: tuple[Shape | FloatArray, ...], touch_m: float) -> Boundary:
     """Return the boundary of a body. Those of the last few bodies are remembered, as seams are."""
     keys = (
-        part.tobytes()
-        if isinstance(part, np.ndarray)
-        else (part.form, part.name, *(row.tobytes() for row in vars(part.pose_body_shape).values()))
+        part.tobytes() if isinstance(part, np.ndarray) else (part.form, part.name, *part.pose_body_shape.key)
         for part in parts
     )
     holes = tuple(part.in_ for part in parts if isinstance(part, Hole))

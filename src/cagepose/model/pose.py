@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -64,9 +65,8 @@ class Pose:
             quaternion = np.array([1.0, 0.0, 0.0, 0.0])
         if quaternion[0] < 0.0:
             quaternion = -quaternion
-        quaternion.setflags(write=False)
         object.__setattr__(self, "position_m", finite_array(position_m, (3,), "position"))
-        object.__setattr__(self, "quaternion_wxyz", quaternion)
+        object.__setattr__(self, "quaternion_wxyz", _fixed(quaternion))
 
     def __repr__(self) -> str:
         turned = (
@@ -83,15 +83,20 @@ class Pose:
         object.__setattr__(pose, "__dict__", {"position_m": position_m, "quaternion_wxyz": quaternion_wxyz})
         return pose
 
-    @property
+    @cached_property
     def rotation(self) -> FloatArray:
         """Rotation matrix, (3, 3): the part's axes are its columns."""
-        return np.array(kernel.matrix_from_quaternion(self.as_tuples()[1]))
+        return _fixed(np.array(kernel.matrix_from_quaternion(self.as_tuples()[1])))
 
     @property
     def euler_zyx(self) -> tuple[float, float, float]:
         """Intrinsic ZYX angles (yaw about z, pitch about y, roll about x) in radians: R = Rz Ry Rx."""
         return kernel.euler_zyx_from_quaternion(self.as_tuples()[1])
+
+    @property
+    def key(self) -> tuple[bytes, bytes]:
+        """What poses have in common that are the same to the last digit."""
+        return self.position_m.tobytes(), self.quaternion_wxyz.tobytes()
 
     def as_tuples(self) -> tuple[Vector, kernel.Quaternion]:
         """Return (position in metres, quaternion), as kernels take them."""
@@ -110,13 +115,19 @@ class Pose:
 
     def __matmul__(self, inner: Pose) -> Pose:
         """Compose: ``pose_a_b @ pose_b_c`` is ``pose_a_c``."""
-        product = kernel.quaternion_product(self.as_tuples()[1], inner.as_tuples()[1])
-        return Pose(self.transform(inner.position_m), product)
+        product = np.array(kernel.quaternion_product(self.as_tuples()[1], inner.as_tuples()[1]))
+        upright = -product if product[0] < 0.0 else product
+        return Pose.from_unit(_fixed(self.transform(inner.position_m)), _fixed(upright))
 
     def inverse(self) -> Pose:
         """Return the pose that undoes this one."""
         conjugate = self.quaternion_wxyz * (1.0, -1.0, -1.0, -1.0)
-        return Pose(-(self.rotation.T @ self.position_m), conjugate)
+        return Pose.from_unit(_fixed(-(self.rotation.T @ self.position_m)), _fixed(conjugate))
+
+
+def _fixed(numbers: FloatArray) -> FloatArray:
+    numbers.setflags(write=False)
+    return numbers
 
 
 def quaternions_of(angles_zyx: FloatArray) -> FloatArray:

@@ -18,9 +18,9 @@ from cagepose.studies.touching import TouchFinder
 
 MOST_GAPS, ENOUGH = 2_000, 100
 """Gaps that there is memory for. Of a crowd, those beyond so many need not be found."""
-FIRST_REACH, USUAL_REACH, FARTHEST, FARTHER = 1.0 / 64.0, 1.0 / 8.0, 4.0, 4.0
-"""In sizes of the scene: how far the search looks at first, how far it does in any case, and at most. It looks so many
-times as far then, until it has found enough, or all of the cage."""
+FIRST_REACH, FARTHEST, FARTHER = 1.0 / 4.0, 4.0, 4.0
+"""In sizes of the scene: how far the search looks at first, and at most. It looks so many times as far then, until it
+has found enough, or all of the cage; and so many times less far in a crowd."""
 SAME_GAP = 4.0
 """In touch tolerances: gaps of two parts along one direction that differ by less are one, as between parallel faces."""
 SAME_WAY = 1e-6
@@ -107,7 +107,7 @@ class GapFinder:
         rows = NO_GAPS if rows is None else rows
         while FARTHER * reach_m < least_failed and FARTHER * reach_m <= FARTHEST * size_m:
             is_known = len(touching | set(rows.elements.tolist())) == everything
-            if len(rows.elements) >= ENOUGH or (is_known and reach_m >= USUAL_REACH * size_m):
+            if is_known or len(rows.elements) >= ENOUGH:
                 break
             reach_m *= FARTHER
             farther = self._rows(pose, reach_m)
@@ -131,33 +131,33 @@ class GapFinder:
 
     def _merged(self, gaps: Gaps) -> Gaps:
         """Return the gaps of parallel faces once, in the middle of where they face each other."""
-        is_open = gaps.gaps_m > 0.0
-        ways = gaps.others_world - gaps.places_world
-        ways[is_open] = unit_rows(ways[is_open])
-        columns = (gaps.elements, gaps.parts, gaps.gaps_m, ways, gaps.places_world)
+        pairs = gaps.elements * len(self._is_plain) + gaps.parts
+        _, pair, n_of_pair = np.unique(pairs, return_inverse=True, return_counts=True)
+        rows = np.flatnonzero((gaps.gaps_m > 0.0) & (n_of_pair[pair] > 1))  # contacts are told one by one
+        if not len(rows):
+            return gaps
+        is_kept = np.ones(len(pairs), dtype=np.bool_)
+        known = dict[int, list[_Alike]]()
+        ways = unit_rows(gaps.others_world[rows] - gaps.places_world[rows]).tolist()
+        columns = (pairs[rows].tolist(), gaps.gaps_m[rows].tolist(), ways, gaps.places_world[rows].tolist())
         same_m = SAME_GAP * self._touch_m
-        kept, known = list[int](), dict[tuple[int, int], list[_Alike]]()
-        for row, (element, part, gap, way, place) in enumerate(
-            zip(*[column.tolist() for column in columns], strict=True)
-        ):
-            kept.append(row)
-            if gap == 0.0:  # contacts are told one by one
-                continue
-            of_pair = known.setdefault((element, part), [])
+        for row, of, gap, way, place in zip(rows.tolist(), *columns, strict=True):
+            of_pair = known.setdefault(of, [])
             for alike in of_pair:
                 if abs(gap - alike.gap) <= same_m and math.dist(way, alike.way) <= SAME_WAY:
-                    kept.pop()
+                    is_kept[row] = False
                     if all(math.dist(place, other) > same_m for other in alike.places):
                         alike.rows.append(row)
                         alike.places.append(place)
                     break
             else:
                 of_pair.append(_Alike(gap, way, [row], [place]))
-        for (element, part), of_pair in known.items():
-            for rows in (alike.rows for alike in of_pair if len(alike.rows) > 1):
-                middle = gaps.places_world[rows].mean(axis=0), gaps.others_world[rows].mean(axis=0)
-                if not (self._is_plain[part] and self._is_plain_cage[element]):  # there need not be anything
-                    nearest = rows[int(np.linalg.norm(gaps.places_world[rows] - middle[0], axis=1).argmin())]
-                    middle = gaps.places_world[nearest].copy(), gaps.others_world[nearest].copy()
-                gaps.places_world[rows[0]], gaps.others_world[rows[0]] = middle
-        return gaps.chosen(np.array(kept, dtype=np.int64))
+        for all_rows in (alike.rows for of_pair in known.values() for alike in of_pair if len(alike.rows) > 1):
+            first = all_rows[0]
+            middle = gaps.places_world[all_rows].mean(axis=0), gaps.others_world[all_rows].mean(axis=0)
+            # In the middle of what is hollow or cut there need not be anything.
+            if not (self._is_plain[gaps.parts[first]] and self._is_plain_cage[gaps.elements[first]]):
+                nearest = all_rows[int(np.linalg.norm(gaps.places_world[all_rows] - middle[0], axis=1).argmin())]
+                middle = gaps.places_world[nearest].copy(), gaps.others_world[nearest].copy()
+            gaps.places_world[first], gaps.others_world[first] = middle
+        return gaps.chosen(np.flatnonzero(is_kept))

@@ -103,8 +103,7 @@ def surface_of(shape: Facets) -> ExactSurface:
     with a notch, or a hollow one, stays facets. Those of the last few shapes are remembered: of a file it is asked what
     is exact, and then a scene is built.
     """
-    place = (row.tobytes() for row in vars(shape.pose_body_shape).values())
-    return _surface_of(_Placed((shape.form, *place), shape))
+    return _surface_of(_Placed((shape.form, *shape.pose_body_shape.key), shape))
 
 
 @dataclass(frozen=True)

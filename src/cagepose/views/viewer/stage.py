@@ -18,12 +18,14 @@ from __future__ import annotations
 
 import itertools
 import math
+import operator
 from collections.abc import Sequence
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
+from cagepose.kernels.algebra.pose import quaternion_about, rotation_vector
 from cagepose.model.checks import FloatArray
 from cagepose.model.hole import Hole
 from cagepose.model.pose import Pose
@@ -219,8 +221,8 @@ class Stage:
         before = reference.transform(self.center_object_m)
         center = before + look.factor * (pose_world_object.transform(self.center_object_m) - before)
         turn = _turn_vector(reference, pose_world_object)
-        turned = _from_turn_vector(look.factor * turn) @ Pose(quaternion_wxyz=reference.quaternion_wxyz)
-        return Pose(center - turned.transform(self.center_object_m), turned.quaternion_wxyz)
+        turned = _from_turn_vector(look.factor * turn) @ reference
+        return Pose(center - turned.rotation @ self.center_object_m, turned.quaternion_wxyz)
 
     def gaps_world(self, reference: int) -> FloatArray:
         """Return, from the place of the object at a reference that is nearest to each of the cage's points and shapes,
@@ -314,8 +316,8 @@ class Stage:
     def _moved(self, one: int, other: int) -> tuple[float, float]:
         """Return by how much the object turns, radians, and how far its centre goes, metres, between two shots."""
         start, end = (self.shown.shots[shot].pose_world_object for shot in (one, other))
-        way = end.transform(self.center_object_m) - start.transform(self.center_object_m)
-        return float(np.linalg.norm(_turn_vector(start, end))), float(np.linalg.norm(way))
+        way_m = math.dist(end.transform(self.center_object_m), start.transform(self.center_object_m))
+        return math.hypot(*_turn_vector(start, end)), way_m
 
     def _fits(self, moved: tuple[float, float], exaggeration: int) -> bool:
         return exaggeration * moved[0] <= MOST_TURN_RAD and exaggeration * moved[1] <= MOST_WAY * self.size_m
@@ -382,16 +384,14 @@ def _play(hole: Hole, pose_world_hole: Pose, others_world: FloatArray) -> float:
 
 def _turn_vector(start: Pose, end: Pose) -> FloatArray:
     """Return axis times angle, (3,), of the turn in the world from one orientation to another, at most half a turn."""
-    turn = (end @ start.inverse()).quaternion_wxyz
-    sine = float(np.linalg.norm(turn[1:]))
-    if sine == 0.0:
-        return np.zeros(3)
-    vector: FloatArray = turn[1:] * (2.0 * math.atan2(sine, float(turn[0])) / sine)
-    return vector
+    before, after = start.as_tuples()[1], end.as_tuples()[1]
+    is_near = sum(map(operator.mul, before, after)) >= 0.0
+    return np.array(rotation_vector(before, after if is_near else (-after[0], -after[1], -after[2], -after[3])))
 
 
 def _from_turn_vector(vector: FloatArray) -> Pose:
-    angle = float(np.linalg.norm(vector))
+    angle = math.hypot(*vector)
     if angle == 0.0:
         return Pose()
-    return Pose(quaternion_wxyz=np.concatenate([[math.cos(angle / 2.0)], math.sin(angle / 2.0) * vector / angle]))
+    x, y, z = (vector / angle).tolist()
+    return Pose(quaternion_wxyz=quaternion_about((x, y, z), angle))

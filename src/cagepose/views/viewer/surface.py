@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -86,13 +87,19 @@ def _write_nearest_part(cores: list[Core], other: Core, first: int, row: int, ga
             found.normals_world[row] = way
 
 
+@lru_cache(maxsize=4)
+def _measures_of(boxes: tuple[Box, ...]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return how n boxes are turned (n, 3, 3), their middles (n, 3) and halves of their edges (n, 1, 3), metres."""
+    turns = np.array([box.pose_object_box.rotation for box in boxes])
+    middles = np.array([box.pose_object_box.position_m for box in boxes])
+    return turns, middles, np.array([box.size_m for box in boxes])[:, None, :] / 2.0
+
+
 def _write_nearest_of_boxes(
     boxes: tuple[Box, ...], pose: Pose, points_world: FloatArray, rows: NDArray[np.bool_], found: Nearest
 ) -> FloatArray:
     """Write the nearest places of the boxes to points (n, 3) into rows; return the gaps, (n,), metres."""
-    turns = np.array([box.pose_object_box.rotation for box in boxes])
-    middles = np.array([box.pose_object_box.position_m for box in boxes])
-    halves = np.array([box.size_m for box in boxes])[:, None, :] / 2.0
+    turns, middles, halves = _measures_of(boxes)
     points = (
         pose.inverse_transform(points_world) - middles[:, None, :]
     ) @ turns  # (n_boxes, n, 3), in each box's frame

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cagepose.errors import SceneError
 from cagepose.files.key_path import parse_key_path, resolved, set_value, value_at
 from cagepose.files.parameters import evaluated
 from cagepose.files.scene_edit import ANGLE_DECIMALS, changed_text, setting, with_cage_angles
@@ -116,7 +117,10 @@ class WhatIf:
         return self._scene_file_with(self._changes(values))
 
     def _scene_file_with(self, changes: dict[str, object]) -> SceneFile:
-        return self._text.scene_file([setting(key, value) for key, value in changes.items()])
+        try:
+            return self._text.scene_with({parse_key_path(key): value for key, value in changes.items()})
+        except (SceneError, ValueError):
+            return self._text.scene_file([setting(key, value) for key, value in changes.items()])  # says what and where
 
     def _text_with(self, changes: dict[str, object]) -> str:
         if not changes:

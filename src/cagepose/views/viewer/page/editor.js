@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources f89571d9c7639bb66c6df120a8a74ad2a41a8cc0ba6f488ad0765d99a51c7385).
+// Built by `make page` from page/ (sources 21ad084c5732bcf368ab7f8bd26aa17fb5e243d17ed70d8f3e94cc2296b19946).
 /*! Contains parts of @codemirror/autocomplete, @codemirror/commands, @codemirror/language, @codemirror/lint, @codemirror/state, @codemirror/streamparser, @codemirror/view:
 MIT License
 
