@@ -20,8 +20,11 @@ from cagepose.files.units import LengthUnit
 from cagepose.runs.replay import replay_event
 from driven.driven_scenes import ALL, exact_wedge_force, jaws, lever, truss, wedge
 
-DRIVE = ["share", "along", "greatest", "work", "jam_possible", "critical_jam_friction", "bodies", "curve"]
-BODY = ["travel", "angle_deg", "force", "moment", "along"]
+DRIVE = [
+    *("share", "along", "work", "friction", "snaps", "jam_possible", "critical_jam_friction", "greatest", "bodies"),
+    "curve",
+]
+BODY = ["pose", "travel", "angle_deg", "force", "moment", "along"]
 PER_METRE: dict[LengthUnit, float] = {"mm": 1000.0, "m": 1.0, "in": 1000.0 / 25.4}
 
 

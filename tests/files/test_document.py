@@ -18,11 +18,11 @@ from cagepose.model.shapes import Capsule, Sphere
 TOP = ["version", "scene", "units", "method", "verdict", "warnings", "pose", "phases", "timing_s"]
 POSE = ["position", "euler_zyx_deg", "quat_wxyz", "center_of_gravity"]
 PHASE = ["name", "verdict", "force_unit", "pose", "events", "contacts", "proof"]
-EVENT = ["rule", "motion", "direction", "axis", "through", "distance", "angle_deg", "hit", "contacts", "pose"]
-CONTACT = ["point", "box", "at", "normal", "gap", "group", "force_normal", "force_tangential"]
+EVENT = ["rule", "motion", "direction", "axis", "through", "distance", "angle_deg", "hit", "contacts", "pose", "note"]
+CONTACT = ["point", "box", "normal", "gap", "near_edge", "force_normal", "force_tangential", "at", "group"]
 PROOF = [
-    *("verdict", "uniqueness", "reason", "residual", "gap_work", "largest_force", "needs_friction", "stability"),
-    *("undetermined", "shared", "motion", "critical_friction"),
+    *("verdict", "reason", "residual", "needs_friction", "stability", "undetermined", "shared", "motion"),
+    *("critical_friction", "gap_work", "largest_force", "uniqueness"),
 ]
 MOTION = ["kind", "direction", "axis", "through", "pitch"]
 VERDICTS = {"stepwise": "stable", "quasistatic": "rests"}

@@ -7,16 +7,15 @@ from collections.abc import Sequence
 from typing import Any, Literal
 
 from cagepose.files.margin_document import margin_document
-from cagepose.files.units import LengthUnit, from_metres
-from cagepose.model.checks import FloatArray
+from cagepose.files.results import length_data, motion_data, plain_data, pose_data
+from cagepose.files.units import LengthUnit
 from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.runs.driven import BodyRun, DriveRun
+from cagepose.runs.driven import DriveRun
 from cagepose.runs.drives import turns_alone
 from cagepose.runs.load_scaling import force_unit
-from cagepose.runs.proof import FreeMotion, Proof
-from cagepose.runs.run import Contact, Event, Motion, PhaseRun, Run
+from cagepose.runs.run import Event, PhaseRun, Run
 from cagepose.studies.margin import Margin
 from cagepose.studies.press_limits import press_limits
 
@@ -73,12 +72,8 @@ class _Writer:
         self.unit: LengthUnit = unit
 
     def pose(self, pose: Pose) -> dict[str, Any]:
-        return {
-            "position": self._lengths(pose.position_m),
-            "euler_zyx_deg": _angles(pose),
-            "quat_wxyz": _numbers(pose.quaternion_wxyz),
-            "center_of_gravity": self._lengths(pose.transform(self.scene.object.center_of_gravity_m)),
-        }
+        center = pose.transform(self.scene.object.center_of_gravity_m)
+        return {**pose_data(pose, self.unit), "center_of_gravity": length_data(center, self.unit)}
 
     def phase(self, phase: PhaseRun, load: Load) -> dict[str, Any]:
         events = [self._event(event) for event in phase.events]
@@ -90,132 +85,44 @@ class _Writer:
             "force_unit": force_unit(self.scene, load),
             "pose": self.pose(phase.pose),
             "events": events,
-            "contacts": [self._contact(contact) for contact in phase.contacts],
-            "proof": self._proof(phase.proof),
+            "contacts": [plain_data(contact, self.unit) for contact in phase.contacts],
+            "proof": {**plain_data(phase.proof, self.unit), "uniqueness": phase.proof.uniqueness},
         }
         if load.drive:
             found["drive"] = None if phase.drive is None else self.drive(phase.drive, load)
         if phase.press is not None:
-            found["press"] = {name: self._pressing(body) for name, body in phase.press.bodies.items()}
+            found["press"] = {name: plain_data(body, self.unit) for name, body in phase.press.bodies.items()}
         return found
 
     def drive(self, drive: DriveRun, load: Load) -> dict[str, Any]:
-        curve = drive.curve
+        curve, separate = drive.curve, ("greatest_along", "greatest_share", "bodies", "curve")
         return {
-            "share": drive.share,
+            **plain_data(drive, self.unit, without=separate),
             "along": self._along(drive.along, load, drive.share),
             "greatest": {
                 "along": self._along(drive.greatest_along, load, drive.greatest_share),
                 "share": drive.greatest_share,
             },
-            "work": self._length(drive.work_j),
-            "jam_possible": [list(shares) for shares in drive.jam_possible],
-            "critical_jam_friction": drive.critical_jam_friction,
-            "bodies": {name: self._body(body, load, drive.share) for name, body in drive.bodies.items()},
-            "curve": {
-                "share": _numbers(curve.share),
-                "along": [self._along(along, load, share) for share, along, _ in curve.places()],
-                "position": [self._lengths(position) for position in curve.position_m],
-                "euler_zyx_deg": [_angles(pose) for _, _, pose in curve.places()],
+            "bodies": {
+                name: {**plain_data(body, self.unit), "along": self._along(body.along, load, drive.share)}
+                for name, body in drive.bodies.items()
             },
-        }
-
-    def _body(self, body: BodyRun, load: Load, share: float) -> dict[str, Any]:
-        return {
-            "travel": self._length(body.travel_m),
-            "angle_deg": _plain(math.degrees(body.angle_rad)),
-            "force": _numbers(body.force_n),
-            "moment": self._lengths(body.moment_nm),
-            "along": self._along(body.along, load, share),
-        }
-
-    def _pressing(self, body: BodyRun) -> dict[str, Any]:
-        return {
-            "travel": self._length(body.travel_m),
-            "along": _plain(body.along),
-            "force": _numbers(body.force_n),
-            "moment": self._lengths(body.moment_nm),
+            "curve": {
+                "share": (curve.share + 0.0).tolist(),
+                "along": [self._along(along, load, share) for share, along, _ in curve.places()],
+                "position": length_data(curve.position_m, self.unit),
+                "euler_zyx_deg": [
+                    [math.degrees(angle) + 0.0 for angle in pose.euler_zyx] for _, _, pose in curve.places()
+                ],
+            },
         }
 
     def _along(self, along: float, load: Load, share: float) -> float:
         """A force for a travel, a moment for turns alone."""
-        return self._length(along) if turns_alone(load, share) else _plain(along)
-
-    def _proof(self, proof: Proof) -> dict[str, Any]:
-        critical = proof.critical_friction
-        return {
-            "verdict": proof.verdict,
-            "uniqueness": proof.uniqueness,
-            "reason": proof.reason,
-            "residual": proof.residual,
-            "gap_work": proof.gap_work,
-            "largest_force": proof.largest_force,
-            "needs_friction": proof.needs_friction,
-            "stability": proof.stability,
-            "undetermined": list(proof.undetermined),
-            "shared": list(proof.shared),
-            "motion": None if proof.motion is None else self._free_motion(proof.motion),
-            "critical_friction": "none" if critical is not None and math.isinf(critical) else critical,
-        }
-
-    def _free_motion(self, motion: FreeMotion) -> dict[str, Any]:
-        return {
-            "kind": motion.kind,
-            "direction": _vector_or_none(motion.direction_world),
-            "axis": _vector_or_none(motion.axis_world),
-            "through": None if motion.through_world is None else self._lengths(motion.through_world),
-            "pitch": self._length(motion.pitch_m),
-        }
+        told: float = length_data(along, self.unit) if turns_alone(load, share) else along + 0.0
+        return told
 
     def _event(self, event: Event) -> dict[str, Any]:
-        motion = event.motion
-        return {
-            "rule": event.rule,
-            "motion": None if motion is None else motion.kind,
-            "direction": None if motion is None else _vector_or_none(motion.direction_world),
-            "axis": None if motion is None else _vector_or_none(motion.axis_world),
-            "through": None if motion is None or motion.through_world is None else self._lengths(motion.through_world),
-            "distance": 0.0 if motion is None else self._distance(motion),
-            "angle_deg": 0.0 if motion is None else _plain(math.degrees(motion.angle_rad)),
-            "hit": list(event.hit),
-            "contacts": list(event.contacts),
-            "pose": self.pose(event.pose_world_object),
-        }
-
-    def _distance(self, motion: Motion) -> float | None:
-        """None for a travel without end (an escape): JSON has no infinite number."""
-        return self._length(motion.distance_m) if math.isfinite(motion.distance_m) else None
-
-    def _contact(self, contact: Contact) -> dict[str, Any]:
-        return {
-            "point": contact.point,
-            "box": contact.box,
-            "at": None if contact.place_world is None else self._lengths(contact.place_world),
-            "normal": _numbers(contact.normal_world),
-            "gap": self._length(contact.gap_m),
-            "group": contact.group,
-            "force_normal": contact.force_normal_n,
-            "force_tangential": _vector_or_none(contact.force_tangential_n),
-        }
-
-    def _length(self, length_m: float) -> float:
-        return _plain(float(from_metres(length_m, self.unit)))
-
-    def _lengths(self, lengths_m: FloatArray) -> list[float]:
-        return _numbers(from_metres(lengths_m, self.unit))
-
-
-def _angles(pose: Pose) -> list[float]:
-    return [_plain(math.degrees(angle)) for angle in pose.euler_zyx]
-
-
-def _plain(value: float) -> float:
-    return float(value) + 0.0  # -0.0 becomes 0.0
-
-
-def _numbers(values: FloatArray) -> list[float]:
-    return [_plain(value) for value in values]
-
-
-def _vector_or_none(values: FloatArray | None) -> list[float] | None:
-    return None if values is None else _numbers(values)
+        told = plain_data(event, self.unit, without=("rule", "motion", "path", "share"))
+        moved = motion_data(event.motion, self.unit)
+        return {"rule": event.rule, **moved, **told, "pose": self.pose(event.pose_world_object)}

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from cagepose.files.document import FORMAT_VERSION
+from cagepose.files.results import motion_data, plain_data, pose_data
 from cagepose.files.units import LengthUnit, from_metres
-from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.studies.cage_verdict import CageVerdict, PathStep
 from cagepose.studies.play_rest import PlayRest, PressedPoint
@@ -27,8 +27,7 @@ def play_document(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> di
         "freedoms": {name: _ends(ends, name in LENGTHS, unit) for name, ends in play.freedoms.items()},
         "points": [
             {
-                "at": _lengths(point.at_object, unit),
-                "direction": _numbers(point.direction_cage),
+                **plain_data(point, unit, without=("low", "high")),
                 **_ends(point, True, unit),
             }
             for point in play.points
@@ -41,13 +40,12 @@ def play_document(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> di
 
 
 def _cage(cage: CageVerdict, unit: LengthUnit) -> dict[str, Any]:
-    return {
-        "verdict": cage.verdict,
-        "reason": cage.reason,
-        "free_directions": list(cage.free_directions),
-        "leaves_at": _pose(cage.leaves_at, unit),
-        "path": None if cage.path is None else [_step(step, unit) for step in cage.path],
-    }
+    path = None if cage.path is None else [_step(step, unit) for step in cage.path]
+    return {**plain_data(cage, unit, without=("path",)), "path": path}
+
+
+def _step(step: PathStep, unit: LengthUnit) -> dict[str, Any]:
+    return {**motion_data(step.motion, unit), "pose": pose_data(step.pose_world_object, unit)}
 
 
 def _ends(ends: PlayRange | PointPlay, is_length: bool, unit: LengthUnit) -> dict[str, Any]:
@@ -66,7 +64,7 @@ def _ends(ends: PlayRange | PointPlay, is_length: bool, unit: LengthUnit) -> dic
         "reached": [_shown(end.reached, is_length, unit) for end in (ends.low, ends.high)],
         "status": [ends.low.status, ends.high.status],
         "is_open": [ends.low.is_open, ends.high.is_open],
-        "poses": [_pose(ends.low.pose_world_object, unit), _pose(ends.high.pose_world_object, unit)],
+        "poses": [_pose_or_none(ends.low.pose_world_object, unit), _pose_or_none(ends.high.pose_world_object, unit)],
         "limits": [_limits(ends.low, is_length, unit), _limits(ends.high, is_length, unit)],
     }
 
@@ -92,22 +90,16 @@ def _gain(gain: float, is_length: bool, unit: LengthUnit) -> float | None:
     return gain if is_length else math.degrees(gain) / float(from_metres(1.0, unit))
 
 
-def _pose(pose: Pose | None, unit: LengthUnit) -> dict[str, Any] | None:
-    if pose is None:
-        return None
-    return {
-        "position": _lengths(pose.position_m, unit),
-        "euler_zyx_deg": [math.degrees(angle) + 0.0 for angle in pose.euler_zyx],
-        "quat_wxyz": _numbers(pose.quaternion_wxyz),
-    }
+def _pose_or_none(pose: Pose | None, unit: LengthUnit) -> dict[str, Any] | None:
+    return None if pose is None else pose_data(pose, unit)
 
 
 def _rest(rest: PlayRest, unit: LengthUnit) -> dict[str, Any]:
     return {
         "phase": rest.phase,
         "force_unit": "N" if rest.in_newtons else "load",
-        "linear_pose": _pose(rest.linear_pose_world_object, unit),
-        "exact_pose": _pose(rest.pose_world_object, unit),
+        "linear_pose": _pose_or_none(rest.linear_pose_world_object, unit),
+        "exact_pose": _pose_or_none(rest.pose_world_object, unit),
         "forces": _forces(rest.forces),
         "exact_forces": _forces(rest.exact_forces),
         "undetermined": {
@@ -125,25 +117,3 @@ def _shown(value: float | None, is_length: bool, unit: LengthUnit) -> float | No
     if value is None:
         return None
     return (float(from_metres(value, unit)) if is_length else math.degrees(value)) + 0.0
-
-
-def _step(step: PathStep, unit: LengthUnit) -> dict[str, Any]:
-    motion = step.motion
-    through = motion.through_world
-    return {
-        "motion": motion.kind,
-        "direction": None if motion.direction_world is None else _numbers(motion.direction_world),
-        "axis": None if motion.axis_world is None else _numbers(motion.axis_world),
-        "through": None if through is None else _lengths(through, unit),
-        "distance": float(from_metres(motion.distance_m, unit)),
-        "angle_deg": math.degrees(motion.angle_rad),
-        "pose": _pose(step.pose_world_object, unit),
-    }
-
-
-def _lengths(lengths_m: FloatArray, unit: LengthUnit) -> list[float]:
-    return _numbers(from_metres(lengths_m, unit))
-
-
-def _numbers(values: FloatArray) -> list[float]:
-    return [float(value) + 0.0 for value in values]

@@ -21,6 +21,7 @@ from typing import Annotated, Any, NamedTuple, TypeVar, Union, get_args, get_ori
 import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, TypeAdapter, WrapValidator, create_model
 
+from cagepose.files.attributes import without_frame
 from cagepose.model.cage import Cage
 from cagepose.model.parts import Object
 from cagepose.model.tolerances import Tolerances
@@ -29,7 +30,6 @@ from cagepose.runs.run import Motion
 
 Kind = TypeVar("Kind")
 
-FRAME = re.compile("_(world|object|cage|box|body|shape)(?![a-z])")
 UNIT = re.compile("_(m|rad)$")
 PARTS_OF_A_SCENE = (Object, Cage, Tolerances)
 """Their fields stand among those of the scene."""
@@ -107,12 +107,12 @@ class _Field(NamedTuple):
 def _fields(kind: type) -> list[_Field]:
     kinds = get_type_hints(kind, include_extras=True)
     parameters = signature(kind).parameters
-    framed = {FRAME.sub("", name): name for name in kinds if name not in parameters}
+    framed = {without_frame(name): name for name in kinds if name not in parameters}
     attributes = {UNIT.sub("", key): name for key, name in framed.items()} | framed | {name: name for name in kinds}
     return [
         _Field(
             key=KEYS.get(f"{kind.__name__}.{attributes[argument]}")
-            or KEYS.get(attributes[argument], FRAME.sub("", attributes[argument])),
+            or KEYS.get(attributes[argument], without_frame(attributes[argument])),
             argument=argument,
             attribute=attributes[argument],
             kind=kinds[attributes[argument]],

@@ -17,6 +17,7 @@ from cagepose.kernels.play.certificate import FREE, OFF_EDGE, RAN_OFF, UNSOLVED
 from cagepose.kernels.play.escape import N_RANDOM, Station, grow_tree
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.model.wording import short
 from cagepose.runs.run import Motion
 from cagepose.studies.bounds import Bounds
 from cagepose.studies.play_frame import PlayFrame, motion_after
@@ -26,6 +27,8 @@ MOST_STATIONS = 100_000
 MOTIONS_OF_BATCH = 500
 """Motions that are tried between two looks at the clock: some milliseconds."""
 RANDOM_SEED = 20250101
+NOISE_DEG = 1e-6
+"""Angles below this are told as 0."""
 STAND_INS_ARE_FREE = (
     "the proof takes points within the cage's shapes and boxes within the object, and the points leave the boxes free"
 )
@@ -125,9 +128,10 @@ def why_not_caged(
         if not np.isfinite(twist).all():
             return reason, None
         position, quaternion = motion_after(twist)
-        yaw, pitch, roll = np.degrees(euler_zyx_from_quaternion(quaternion)).tolist()
+        angles = np.degrees(euler_zyx_from_quaternion(quaternion)).tolist()
+        yaw, pitch, roll = (short(angle, 4, NOISE_DEG) for angle in angles)
         return (
-            f"{reason}; it is farthest off, to first order, after roll {roll:.4g}, pitch {pitch:.4g}, yaw {yaw:.4g} deg"
+            f"{reason}; it is farthest off, to first order, after roll {roll}, pitch {pitch}, yaw {yaw} deg"
         ), frame.pose_after(position, quaternion)
     return (
         f"the play is too large for the proof: the linearisation error of the gap of {point} to {box} is too great"
