@@ -1,7 +1,9 @@
 // The controls of a live page: what they say is sent to the server, and what it answers is shown.
 //
-// A control changes a value of a text, the base. Once somebody edits the text, it is the base, with what controls say in it.
+// A control changes a value of a text, the base. Once somebody edits the text, it is the base, with what controls have said
+// in it as far as that is answered.
 
+import { sub } from "./geometry.js";
 import { $, element } from "./words.js";
 
 // Where a control's value stands: two controls may be of one.
@@ -12,6 +14,7 @@ export class Panel {
   constructor(controls, fileName, text, asker, answered) {
     Object.assign(this, { controls, fileName, text, asker, answered, base: null, editor: null });
     this.start = [0, 0, 0]; // how far the start was dragged
+    this.said = null; // values and start, as they stand in the text
     this.build();
     $("undo").addEventListener("click", () => this.undo());
     $("save").addEventListener("click", () => this.save());
@@ -21,6 +24,7 @@ export class Panel {
   build() {
     const scrolled = $("controls").scrollTop;
     this.values = this.controls.map((control) => control.value);
+    this.forget();
     this.inputs = [];
     $("controls").replaceChildren();
     let group = null;
@@ -95,11 +99,18 @@ export class Panel {
     this.ask();
   }
 
-  // The text is another one now, in which all stands that controls have said.
+  // The text is another one now. What controls say and the last answer had not is said of this one.
   edit(text) {
+    const { values, start } = this.said;
     this.base = this.text = text;
-    this.start = [0, 0, 0];
-    this.controls.forEach((control, which) => { control.value = this.values[which]; });
+    this.start = sub(this.start, start);
+    this.controls.forEach((control, which) => { control.value = values[which]; });
+    this.said = { values, start: [0, 0, 0] };
+  }
+
+  // What controls say and no answer has is not said any more.
+  forget() {
+    this.said = { values: [...this.values], start: this.start };
   }
 
   // Shows sliders for numbers of the text before all others.
@@ -135,9 +146,15 @@ export class Panel {
   }
 
   ask() {
-    let asked;
-    this.asker.ask("run", () => { asked = this.question(); return asked; }, (answer) => {
-      if (asked.text === this.base) this.take(answer, asked); // else the text has been edited meanwhile
+    let asked, said;
+    this.asker.ask("run", () => {
+      said = { values: [...this.values], start: this.start };
+      return (asked = this.question());
+    }, (answer) => {
+      if (asked.text === this.base) { // else the text has been edited meanwhile
+        this.said = said;
+        this.take(answer, asked);
+      }
       this.answered(answer);
     }, (refusal) => this.editor?.refused(refusal, asked) ?? refusal.problems);
   }

@@ -19,7 +19,7 @@ class Sheet {
     this.onDisk = new OnDisk(this, name, version, saved);
     this.build();
     this.writing = new Writing(this.room, panel.text, schema, { typed: (isNow) => this.typed(isNow), moved: () => this.tellNumber(), altClicked: () => this.addSlider() });
-    this.varied = new Varied(this.study, { text: () => this.text, seen: (path, value) => this.write(path, value) });
+    this.varied = new Varied(this.study, { text: () => this.text, around: (path) => this.around(path), seen: (path, value) => this.write(path, value) });
     panel.editor = this;
     this.tellState();
     this.tellNumber();
@@ -80,8 +80,13 @@ class Sheet {
     this.panel.ask();
   }
 
-  // Takes a text that nobody typed, and runs it.
+  // Takes another text in the place of this one and of what sliders say, and runs it.
   replace(text) {
+    this.panel.forget();
+    this.put(text);
+  }
+
+  put(text) {
     this.writing.isolate();
     this.writing.take(text);
     this.panel.edit(text);
@@ -123,6 +128,7 @@ class Sheet {
   }
 
   tellState() {
+    this.varied?.tellStale();
     this.state.textContent = this.isUnsaved ? "edited, not saved" : "as in the file";
     this.saveButton.disabled = !this.isUnsaved;
   }
@@ -140,10 +146,16 @@ class Sheet {
       button("vary this", "many runs with values around this one", () => this.varied.ask(key, number)));
   }
 
+  // What stands in the text before and behind a number; null: it is not there any more.
+  around(path) {
+    const number = this.writing.numberOf(path);
+    return number && [this.text.slice(0, number.from), this.text.slice(number.to)];
+  }
+
   // Writes a number in the place of another one, as if somebody had typed it.
   write(path, value) {
-    const number = this.writing.numberOf(path);
-    if (number) this.replace(`${this.text.slice(0, number.from)}${value}${this.text.slice(number.to)}`);
+    const around = this.around(path);
+    if (around) this.put(around.join(value));
   }
 
   async addSlider() {

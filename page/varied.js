@@ -17,10 +17,18 @@ const COLORS = { same: "#00664a", moved: "#e69f00", other: "#a33b00" };
 const short = (value) => String(Number(value.toPrecision(4)));
 
 export class Varied {
-  // `text()` is the scene's text now; `seen(path, value)` puts a value into it.
-  constructor(room, { text, seen }) {
-    Object.assign(this, { room, text, seen, study: null });
+  // `text()` is the scene's text now, `around(path)` what stands in it before and behind a number; `seen(path, value)` puts a
+  // value there.
+  constructor(room, { text, around, seen }) {
+    Object.assign(this, { room, text, around, seen, study: null });
     room.hidden = true;
+  }
+
+  // Says of a study that it is one of another text, where more than its own number differs.
+  tellStale() {
+    if (!this.study) return;
+    const [now, then] = [this.around(this.study.path), this.study.around];
+    this.stale.hidden = now !== null && now[0] === then[0] && now[1] === then[1];
   }
 
   close() {
@@ -44,13 +52,15 @@ export class Varied {
     close.addEventListener("click", () => this.close());
     this.unit = element("small", "");
     form.append(element("code", key), ` = ${value} \u00B1 `, by, this.unit, runs, element("button", "run"), close);
+    this.stale = element("p", "The text has been edited since; run again for what it is now.", "open");
+    this.stale.hidden = true;
     this.told = element("div", "");
     this.told.setAttribute("role", "status");
     this.canvas = document.createElement("canvas");
     this.canvas.setAttribute("aria-label", `How runs end, over ${key}; click one to see it`);
     this.canvas.hidden = true;
     this.canvas.addEventListener("click", (event) => this.see(event.offsetX));
-    this.room.replaceChildren(form, this.told, this.canvas);
+    this.room.replaceChildren(form, this.stale, this.told, this.canvas);
     this.room.hidden = false;
     form.addEventListener("submit", (event) => {
       event.preventDefault();
@@ -65,9 +75,9 @@ export class Varied {
   async begin({ key, path, value, by, count }) {
     const stride = 2 * Math.round(GOLDEN * count / 2) + 1; // odd, and the counts are powers of two
     const values = Array.from({ length: count }, (_, i) => Number((value - by + 2 * by * ((i * stride) % count + 0.5) / count).toPrecision(12)));
-    const study = { key, path, value, by, values, text: this.text(), ends: [], isOver: false };
+    const study = { key, path, value, by, values, text: this.text(), around: this.around(path), ends: [], isOver: false };
     this.study = study;
-    this.canvas.hidden = true;
+    this.canvas.hidden = this.stale.hidden = true;
     this.told.replaceChildren("running \u2026");
     try {
       let size = 1;

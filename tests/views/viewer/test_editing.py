@@ -213,6 +213,20 @@ def test_a_slider_that_is_added_while_another_one_is_run_leaves_that_its_value(
     assert shown_angles(sheet) == pytest.approx(expected_angles(written), abs=1e-5)
 
 
+def test_what_is_typed_while_a_slider_is_run_leaves_that_its_value(
+    sheet: Page, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(what_if, "run", lambda scene: (time.sleep(1.0), run(scene))[1])
+    put_cursor(sheet, "-91.5, -31.55, -1]")
+    sheet.get_by_label("cage: pitch", exact=True).last.fill("0.25")
+    replace(sheet, "-91.5, -31.55", "-90, -31.55")
+    wait_until(sheet, "cagepose.text().includes('0.25') && !cagepose.state().isBusy")
+    written = text_of(sheet)
+    assert "euler_zyx_deg: [0, 0.25, 0]} # the misalignment" in written
+    assert "- [-90, -31.55, -1]" in written
+    assert shown_angles(sheet) == pytest.approx(expected_angles(written), abs=1e-5)
+
+
 def test_alt_click_gives_a_slider_and_a_number_that_has_one_gets_no_second(sheet: Page) -> None:
     n_sliders = sheet.locator("#controls input[type=range]").count()
     put_cursor(sheet, "100, 0, -20]")

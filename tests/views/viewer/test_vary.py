@@ -97,6 +97,11 @@ def test_a_click_into_the_plot_puts_that_value_into_the_text(asked: Page) -> Non
     value = 0.1 - 0.1 + 0.2 * 31.5 / 32
     assert f"euler_zyx_deg: [0, {value:.12g}, 0]}} # the misalignment" in asked.evaluate("cagepose.text()")
     wait_until(asked, "cagepose.state().drawnAnswers === 1")
+    stale = asked.get_by_text("The text has been edited since")
+    assert stale.is_hidden()  # it is of the study itself
+    asked.evaluate("(at) => cagepose.putCursor(at)", TEXT.index("-91.5, -31.55"))
+    asked.keyboard.press("Delete")
+    stale.wait_for()
 
 
 def test_a_study_does_not_keep_sliders_waiting_and_can_be_cancelled(
