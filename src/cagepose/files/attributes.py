@@ -1,14 +1,43 @@
-"""What the name of an attribute says of it: its frame, ``pose_world_object``, and its unit, ``gap_m``. Saved runs and
-the documents of ``--json`` read it.
+"""What the names of attributes say: their frame, ``pose_world_object``, and their unit, ``gap_m``. Scene files, saved
+runs and the documents of ``--json`` are read and written by it.
 """
 
 from __future__ import annotations
 
 import re
+from functools import cache
+from inspect import Parameter, signature
+from typing import Any, NamedTuple, get_type_hints
 
 FRAME = re.compile("_(world|object|cage|box|body|shape)(?![a-z])")
+UNIT = re.compile("_(m|rad)$")
 PLACES = {"through_world", "place_world", "places_world", "at_object"}
 """Attributes without a unit in their name that are places, metres."""
+
+
+class Attribute(NamedTuple):
+    """What a constructor takes, and where it stands then: under the same name, or under that name with a frame
+    (``pose`` in ``pose_world_object``) or a unit (``travel`` in ``travel_m``).
+    """
+
+    argument: str
+    name: str
+    kind: Any
+    is_required: bool
+
+
+@cache
+def attributes_of(kind: type) -> tuple[Attribute, ...]:
+    """Return what makes the things of a class, in the order in which its constructor takes it."""
+    kinds = get_type_hints(kind, include_extras=True)
+    parameters = signature(kind).parameters
+    framed = {without_frame(name): name for name in kinds if name not in parameters}
+    names = {UNIT.sub("", key): name for key, name in framed.items()} | framed | {name: name for name in kinds}
+    return tuple(
+        Attribute(argument, names[argument], kinds[names[argument]], parameter.default is Parameter.empty)
+        for argument, parameter in parameters.items()
+        if argument in names
+    )
 
 
 def without_frame(name: str) -> str:

@@ -11,11 +11,12 @@ import numpy as np
 
 from cagepose.errors import Key, Problem, SceneError, key_path
 from cagepose.files.build_loads import load_of
+from cagepose.files.measures import made
 from cagepose.files.points_file import PointsTable
 from cagepose.files.schema import BoxModel, SceneModel
 from cagepose.files.schema_base import PoseModel
 from cagepose.files.schema_cage import CageBodyModel
-from cagepose.files.schema_shapes import CoefficientModel, MeshModel, ShapeModel
+from cagepose.files.schema_shapes import CoefficientModel, FacetsModel, MeshModel, ShapeModel
 from cagepose.files.schema_surfaces import SurfaceModel
 from cagepose.files.triples import triples, whole_numbers, whole_triples
 from cagepose.files.units import LengthUnit, to_metres
@@ -23,7 +24,7 @@ from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.cage_body import CageBody
 from cagepose.model.facets import Facets
-from cagepose.model.hole import Chamfer, Hole
+from cagepose.model.hole import Hole
 from cagepose.model.naming import place_of
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
@@ -41,6 +42,8 @@ Given = ParamSpec("Given")
 
 Body = tuple[Key, ...]
 """Where a body stands in a scene file: ``("object",)``, ``("cage",)`` or ``("cage", "bodies", "mate")``."""
+SHAPES: dict[str, type[Shape]] = {kind.kind: kind for kind in (Sphere, Capsule, Cylinder, Cone, Convex, Disc, Hole)}
+"""By the key that says what a shape is; a box names its pose otherwise, and facets stand in texts."""
 CURRENT = Path()
 """The folder that names of files start from where there is no scene file."""
 
@@ -158,37 +161,19 @@ class _Builder:
         ]
 
     def shape(self, model: ShapeModel) -> Shape:
-        pose, length = self.shape_pose(model), self.length
-        if model.box is not None:
-            return Box(to_metres(model.box.size, self.unit), pose, model.name)
-        if model.sphere is not None:
-            return Sphere(length(model.sphere.radius), pose, model.name)
-        if model.capsule is not None:
-            return Capsule(length(model.capsule.radius), length(model.capsule.length), pose, model.name)
-        if model.cylinder is not None:
-            return Cylinder(length(model.cylinder.radius), length(model.cylinder.length), pose, model.name)
-        if model.cone is not None:
-            radii = length(model.cone.radius_bottom), length(model.cone.radius_top)
-            return Cone(*radii, length(model.cone.length), pose, model.name)
-        if model.convex is not None:
-            vertices = to_metres(model.convex.vertices, self.unit)
-            return Convex(vertices, length(model.convex.radius or 0.0), pose, model.name)
+        pose, (kind,) = self.shape_pose(model), model.kinds_given()
         if model.facets is not None:
-            vertices = to_metres(triples(model.facets.vertices, "vertices"), self.unit)
-            flat_m = None if model.facets.flat is None else length(model.facets.flat)
-            triangles = whole_triples(model.facets.triangles, "triangles")
-            surfaces = [self.surface(surface) for surface in model.facets.surfaces or ()]
-            on = whole_numbers(model.facets.on or "", "on")
-            return Facets(vertices, triangles, flat_m, pose, model.name, surfaces, on)
-        if model.disc is not None:
-            return Disc(length(model.disc.radius), pose, model.name)
-        assert model.hole is not None, "the schema lets no shape pass that has no kind"
-        chamfer = None
-        if model.hole.chamfer is not None:
-            chamfer = Chamfer(length(model.hole.chamfer.width), math.radians(model.hole.chamfer.angle_deg))
-        return Hole(
-            length(model.hole.radius), length(model.hole.depth), chamfer, model.hole.in_ or (), pose, model.name
-        )
+            return self.facets(model.facets, pose, model.name)
+        if model.box is not None:
+            return made(Box, model.box, self.unit, pose_object_box=pose, name=model.name)
+        return made(SHAPES[kind], getattr(model, kind), self.unit, pose_body_shape=pose, name=model.name)
+
+    def facets(self, model: FacetsModel, pose: Pose, name: str | None) -> Facets:
+        vertices = to_metres(triples(model.vertices, "vertices"), self.unit)
+        flat_m = None if model.flat is None else self.length(model.flat)
+        triangles = whole_triples(model.triangles, "triangles")
+        surfaces = [self.surface(surface) for surface in model.surfaces or ()]
+        return Facets(vertices, triangles, flat_m, pose, name, surfaces, whole_numbers(model.on or "", "on"))
 
     def surface(self, model: SurfaceModel) -> Surface:
         if model.plane is not None:

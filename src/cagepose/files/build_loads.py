@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TypeVar
 
 from cagepose.errors import Key, Problem, SceneError
-from cagepose.files.schema import ForceModel, LoadModel, MomentModel, SpringModel
+from cagepose.files.measures import made
+from cagepose.files.schema import LoadModel
 from cagepose.files.schema_driven import LegModel, Legs, PressModel, StopModel
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.drive import Drive
@@ -35,12 +37,12 @@ def load_of(model: LoadModel, unit: LengthUnit) -> Load:
         All that is wrong with it, with paths from the load.
     """
     parts = _Parts(unit)
-    force = None if model.force is None else parts.make(("force",), _force, model.force)
-    forces = parts.listed("forces", _force, model.forces or [])
-    moments = parts.listed("moments", _moment, model.moments or [])
-    springs = parts.listed("springs", _spring, model.springs or [])
+    force = None if model.force is None else parts.make(("force",), partial(made, Force), model.force)
+    forces = parts.listed("forces", partial(made, Force), model.forces or [])
+    moments = parts.listed("moments", partial(made, Moment), model.moments or [])
+    springs = parts.listed("springs", partial(made, Spring), model.springs or [])
     drive = {
-        name: [made for place, leg in _placed(legs) if (made := parts.make(("drive", name, *place), _leg, leg))]
+        name: [one for place, leg in _placed(legs) if (one := parts.make(("drive", name, *place), _leg, leg))]
         for name, legs in (model.drive or {}).items()
     }
     presses = {name: parts.make(("press", name), _press, press) for name, press in (model.press or {}).items()}
@@ -79,21 +81,6 @@ class _Parts:
     def listed(self, key: str, maker: Callable[[Given, LengthUnit], Noun], models: Sequence[Given]) -> list[Noun]:
         made = [self.make((key, number), maker, model) for number, model in enumerate(models)]
         return [one for one in made if one is not None]
-
-
-def _force(model: ForceModel, unit: LengthUnit) -> Force:
-    at, at_world = (None if point is None else to_metres(point, unit) for point in (model.at, model.at_world))
-    return Force(model.direction, at, model.magnitude, at_world_m=at_world, follows=bool(model.follows))
-
-
-def _moment(model: MomentModel, unit: LengthUnit) -> Moment:
-    return Moment(model.direction, float(to_metres(model.magnitude, unit)), follows=bool(model.follows))
-
-
-def _spring(model: SpringModel, unit: LengthUnit) -> Spring:
-    per_metre = model.stiffness / float(to_metres(1.0, unit))
-    ends = to_metres(model.at, unit), to_metres(model.to, unit)
-    return Spring(*ends, per_metre, model.preload or 0.0, of=model.of)
 
 
 def _placed(legs: Legs) -> list[tuple[tuple[Key, ...], LegModel]]:

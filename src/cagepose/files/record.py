@@ -1,8 +1,7 @@
 """Runs and scenes as plain data without loss: SI units, every float to its last digit.
 
-One rule serves all classes: what the constructor takes is saved, from the attribute of the same name, or of that name
-with a frame (``pose`` from ``pose_world_object``) or a unit (``travel`` from ``travel_m``). A field that is added to a
-class is so saved and read as well; one with a default may be missing from a file, which then is older than the field.
+One rule serves all classes: what the constructor takes is saved, see `attributes_of`. A field that is added to a class
+is so saved and read as well; one with a default may be missing from a file, which then is older than the field.
 
 Reading is strict, and a damaged file is refused by the place of the damage: each class becomes a pydantic model.
 """
@@ -10,18 +9,16 @@ Reading is strict, and a damaged file is refused by the place of the damage: eac
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Mapping
 from functools import cache, partial, reduce
-from inspect import Parameter, signature
 from operator import or_
 from types import UnionType
-from typing import Annotated, Any, NamedTuple, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, NamedTuple, TypeVar, Union, get_args, get_origin
 
 import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, TypeAdapter, WrapValidator, create_model
 
-from cagepose.files.attributes import without_frame
+from cagepose.files.attributes import attributes_of, without_frame
 from cagepose.model.cage import Cage
 from cagepose.model.parts import Object
 from cagepose.model.tolerances import Tolerances
@@ -30,7 +27,6 @@ from cagepose.runs.run import Motion
 
 Kind = TypeVar("Kind")
 
-UNIT = re.compile("_(m|rad)$")
 PARTS_OF_A_SCENE = (Object, Cage, Tolerances)
 """Their fields stand among those of the scene."""
 KEYS = {
@@ -105,21 +101,15 @@ class _Field(NamedTuple):
 
 @cache
 def _fields(kind: type) -> list[_Field]:
-    kinds = get_type_hints(kind, include_extras=True)
-    parameters = signature(kind).parameters
-    framed = {without_frame(name): name for name in kinds if name not in parameters}
-    attributes = {UNIT.sub("", key): name for key, name in framed.items()} | framed | {name: name for name in kinds}
     return [
         _Field(
-            key=KEYS.get(f"{kind.__name__}.{attributes[argument]}")
-            or KEYS.get(attributes[argument], without_frame(attributes[argument])),
-            argument=argument,
-            attribute=attributes[argument],
-            kind=kinds[attributes[argument]],
-            is_required=parameter.default is Parameter.empty,
+            key=KEYS.get(f"{kind.__name__}.{one.name}") or KEYS.get(one.name, without_frame(one.name)),
+            argument=one.argument,
+            attribute=one.name,
+            kind=one.kind,
+            is_required=one.is_required,
         )
-        for argument, parameter in parameters.items()
-        if argument in attributes
+        for one in attributes_of(kind)
     ]
 
 

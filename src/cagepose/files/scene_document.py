@@ -7,33 +7,30 @@ were given as quaternions.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cagepose.files.measures import Measures, plain_number
 from cagepose.files.triples import text_of
-from cagepose.files.units import METRES_OF, LengthUnit, to_metres
+from cagepose.files.units import LengthUnit
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.cage_elements import Elements
 from cagepose.model.drive import Drive
 from cagepose.model.facets import Facets
-from cagepose.model.hole import Hole
-from cagepose.model.load import Force, Load, Moment
+from cagepose.model.load import Load
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.press import Press
 from cagepose.model.scene import Scene
-from cagepose.model.shapes import Convex, Shape
-from cagepose.model.spring import Spring
+from cagepose.model.shapes import Shape
 from cagepose.model.surfaces import CONE, PLANE, SPHERE, Surface
 from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT
 
-FEWEST_DIGITS, MOST_DIGITS = 6, 17
-"""A number is written with so many digits; 17 tell any two doubles apart."""
 MOST_DECIMALS = 15
 """An angle in degrees is written with so many decimals."""
 
@@ -57,31 +54,16 @@ def pose_angles(pose: Pose) -> list[float] | None:
         rounded = [round(angle + turn, decimals) for angle, turn in zip(angles, around, strict=True)]
         again = Pose(euler_zyx=[math.radians(angle) for angle in rounded])
         if np.array_equal(again.quaternion_wxyz, pose.quaternion_wxyz):
-            return [_plain(angle) for angle in rounded]
+            return [plain_number(angle) for angle in rounded]
     return None
 
 
-def _plain(value: float) -> float:
-    """Return a whole number as one."""
-    return int(value) if value == int(value) and abs(value) < 1e15 else value
-
-
-def _shortest(value: float, wanted: float, back: Callable[[float], float]) -> float:
-    """Return the number of fewest digits near ``value`` that ``back`` turns into ``wanted``."""
-    for digits in range(FEWEST_DIGITS, MOST_DIGITS + 1):
-        shown = float(f"{value:.{digits}g}")
-        if back(shown) == wanted:
-            return _plain(shown)
-    return value
-
-
-class SceneWriter:
+class SceneWriter(Measures):
     """Writes a scene, or parts of one, with lengths in a unit; what has its own friction says so beside its shape."""
 
     def __init__(self, unit: LengthUnit, friction_of: Mapping[str, float] | None = None) -> None:
+        super().__init__(unit)
         self.unit: LengthUnit = unit
-        self.ratio = METRES_OF[unit]  # by which lengths of a scene are divided one by one, without NumPy
-        self.metres = float(to_metres(1.0, unit))
         self.friction_of = dict(friction_of or {})
 
     def document(self, scene: Scene) -> dict[str, Any]:
@@ -95,8 +77,7 @@ class SceneWriter:
         found |= _given({"method": scene.method, "metric": scene.metric})
         touch, band_rad = scene.tolerances.touch, scene.tolerances.grazing_band_rad
         if touch != TOUCH_DEFAULT or band_rad != GRAZING_BAND_DEFAULT_RAD:
-            band_deg = _shortest(math.degrees(band_rad), band_rad, math.radians)
-            found["tolerances"] = {"touch": touch, "grazing_band_deg": band_deg}
+            found["tolerances"] = {"touch": touch, "grazing_band_deg": self.angle(band_rad)}
         if scene.adjustable:
             found["adjustable"] = {
                 entry.name: {"key": entry.key, "range": [entry.low, entry.high]} for entry in scene.adjustable
@@ -113,13 +94,9 @@ class SceneWriter:
         if not is_centroid:
             found["center_of_gravity"] = self.lengths(held.center_of_gravity_m)
         if held.mass_kg is not None:
-            found["mass"] = _plain(held.mass_kg)
+            found["mass"] = plain_number(held.mass_kg)
         if held.inertia_kg_m2 is not None:
-            square = self.metres**2
-            found["inertia"] = [
-                [_shortest(value / square, value, lambda shown: shown * square) for value in row]
-                for row in held.inertia_kg_m2.tolist()
-            ]
+            found["inertia"] = [[self.inertia(value) for value in row] for row in held.inertia_kg_m2.tolist()]
         found["pose"] = self.pose(held.pose_world_object)
         return found
 
@@ -171,36 +148,21 @@ class SceneWriter:
         radius = self.length(abs(surface.radius_m))
         if surface.kind == SPHERE:
             return {"center": point, "radius": radius, **hollow}
-        slope = {"slope": _plain(surface.slope)} if surface.kind == CONE else {}
+        slope = {"slope": plain_number(surface.slope)} if surface.kind == CONE else {}
         return {"point": point, "axis": axis, "radius": radius, **slope, **hollow}
 
     def numbers(self, shape: Shape) -> dict[str, Any]:
         """Return the numbers that make a shape."""
-        found: dict[str, Any]
-        if isinstance(shape, Box):
-            return {"size": self.lengths(shape.size_m)}
-        if isinstance(shape, Facets):
-            corners = text_of([self.lengths(vertex) for vertex in shape.vertices_m])
-            found = {
-                "vertices": corners,
-                "triangles": text_of(shape.triangles.tolist()),
-                "flat": self.length(shape.flat_m),
-            }
-            if shape.surfaces:
-                found["surfaces"] = [{surface.kind: self.surface(surface)} for surface in shape.surfaces]
-                found["on"] = " ".join(str(index) for index in shape.on.tolist())
-            return found
-        if isinstance(shape, Convex):
-            vertices = [self.lengths(vertex) for vertex in shape.vertices_m]
-            return {"vertices": vertices, "radius": self.length(shape.radius_m)}
-        found = {key.removesuffix("_m"): self.length(value) for key, value in vars(shape).items() if key.endswith("_m")}
-        if isinstance(shape, Hole):
-            if shape.chamfer is not None:
-                angle_rad = shape.chamfer.angle_rad
-                angle_deg = _shortest(math.degrees(angle_rad), angle_rad, math.radians)
-                found["chamfer"] = {"width": self.length(shape.chamfer.width_m), "angle_deg": angle_deg}
-            if shape.in_:
-                found["in"] = list(shape.in_)
+        if not isinstance(shape, Facets):
+            return self.of(shape)
+        found: dict[str, Any] = {
+            "vertices": text_of([self.lengths(vertex) for vertex in shape.vertices_m]),
+            "triangles": text_of(shape.triangles.tolist()),
+            "flat": self.length(shape.flat_m),
+        }
+        if shape.surfaces:
+            found["surfaces"] = [{surface.kind: self.surface(surface)} for surface in shape.surfaces]
+            found["on"] = " ".join(str(index) for index in shape.on.tolist())
         return found
 
     def pose(self, pose: Pose, *, turn: bool = True) -> dict[str, Any]:
@@ -221,43 +183,21 @@ class SceneWriter:
             {
                 "name": load.name,
                 "gravity": gravity,
-                "force": None if load.force is None else self.force(load.force),
-                "forces": [self.force(force) for force in load.forces] or None,
-                "moments": [self.moment(moment) for moment in load.moments] or None,
-                "springs": [self.spring(spring) for spring in load.springs] or None,
+                "force": None if load.force is None else self.of(load.force),
+                "forces": [self.of(force) for force in load.forces] or None,
+                "moments": [self.of(moment) for moment in load.moments] or None,
+                "springs": [self.of(spring) for spring in load.springs] or None,
                 "drive": {name: self.legs(legs) for name, legs in load.drive.items()} or None,
                 "stop_at": self.limit(load),
                 "press": {name: self.press(press) for name, press in load.press.items()} or None,
             }
         )
 
-    def force(self, force: Force) -> dict[str, Any]:
-        found: dict[str, Any] = {"direction": _plain_list(force.direction)}
-        for key, point in (("at", force.at_object_m), ("at_world", force.at_world_m)):
-            if point is not None:
-                found[key] = self.lengths(point)
-        return found | _given({"magnitude": force.magnitude_n, "follows": force.follows or None})
-
-    def moment(self, moment: Moment) -> dict[str, Any]:
-        found = {"direction": _plain_list(moment.direction), "magnitude": self.length(moment.magnitude_nm)}
-        return found | _given({"follows": moment.follows or None})
-
-    def spring(self, spring: Spring) -> dict[str, Any]:
-        wanted = spring.stiffness_n_per_m
-        return {
-            "at": self.lengths(spring.at_object_m),
-            "to": self.lengths(spring.to_m),
-            "stiffness": _shortest(wanted * self.metres, wanted, lambda shown: shown / self.metres),
-            "preload": _plain(spring.preload_n),
-            **_given({"of": spring.of}),
-        }
-
     def press(self, press: Press) -> dict[str, Any]:
-        wanted, along = press.stiffness_n_per_m, _plain_list(press.along_cage)
-        if wanted == 0.0:
-            return {"along": along, "force": _plain(press.force_n)}
-        stiffness = _shortest(wanted * self.metres, wanted, lambda shown: shown / self.metres)
-        return {"along": along, "spring": {"stiffness": stiffness, "preload": _plain(press.force_n)}}
+        found = self.of(press)
+        if press.stiffness_n_per_m == 0.0:
+            return {"along": found["along"], "force": found["force"]}
+        return {"along": found["along"], "spring": {"stiffness": found["stiffness"], "preload": found["force"]}}
 
     def legs(self, legs: Sequence[Drive]) -> dict[str, Any] | list[dict[str, Any]]:
         found = [self.leg(leg) for leg in legs]
@@ -269,27 +209,18 @@ class SceneWriter:
             found["turn"] = {
                 "about": _plain_list(leg.about_cage),
                 "through": self.lengths(leg.through_cage_m),
-                "angle_deg": _shortest(math.degrees(leg.angle_rad), leg.angle_rad, math.radians),
+                "angle_deg": self.angle(leg.angle_rad),
             }
         return found
 
     def limit(self, load: Load) -> dict[str, Any] | None:
         if load.stop_at is None:
             return None
-        return {"moment": self.length(load.stop_at)} if load.stops_at_moment else {"force": _plain(load.stop_at)}
-
-    def length(self, length_m: float) -> float:
-        numerator, denominator = self.ratio
-        if numerator == denominator:
-            return _plain(float(length_m))
-        return _shortest(length_m * denominator / numerator, length_m, lambda shown: shown * numerator / denominator)
-
-    def lengths(self, lengths_m: ArrayLike) -> list[float]:
-        return [self.length(length_m) for length_m in np.asarray(lengths_m, dtype=np.float64).tolist()]
+        return {"moment": self.length(load.stop_at)} if load.stops_at_moment else {"force": plain_number(load.stop_at)}
 
 
 def _plain_list(values: ArrayLike) -> list[float]:
-    return [_plain(value) for value in np.asarray(values, dtype=np.float64).tolist()]
+    return [plain_number(value) for value in np.asarray(values, dtype=np.float64).tolist()]
 
 
 def _given(keys: dict[str, Any]) -> dict[str, Any]:
