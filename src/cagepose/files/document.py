@@ -61,6 +61,18 @@ def drive_document(scene: Scene, drive: DriveRun, load: Load, length_unit: Lengt
     return _Writer(scene, length_unit).drive(drive, load)
 
 
+def motion_document(motion: FreeMotion, length_unit: LengthUnit) -> dict[str, Any]:
+    """Return how an object begins to move as the document has it."""
+    through = motion.through_world
+    return {
+        "kind": motion.kind,
+        "direction": _vector_or_none(motion.direction_world),
+        "axis": _vector_or_none(motion.axis_world),
+        "through": None if through is None else _numbers(from_metres(through, length_unit)),
+        "pitch": _plain(float(from_metres(motion.pitch_m, length_unit))),
+    }
+
+
 def _force_unit(run: Run) -> Literal["N", "load"] | None:
     """Return the unit of forces: newtons, or the load; None: phases differ, and each of them tells its own."""
     units = {force_unit(run.scene, load) for load in run.scene.loads[: len(run.phases)]}
@@ -154,17 +166,8 @@ class _Writer:
             "stability": proof.stability,
             "undetermined": list(proof.undetermined),
             "shared": list(proof.shared),
-            "motion": None if proof.motion is None else self._free_motion(proof.motion),
+            "motion": None if proof.motion is None else motion_document(proof.motion, self.unit),
             "critical_friction": "none" if critical is not None and math.isinf(critical) else critical,
-        }
-
-    def _free_motion(self, motion: FreeMotion) -> dict[str, Any]:
-        return {
-            "kind": motion.kind,
-            "direction": _vector_or_none(motion.direction_world),
-            "axis": _vector_or_none(motion.axis_world),
-            "through": None if motion.through_world is None else self._lengths(motion.through_world),
-            "pitch": self._length(motion.pitch_m),
         }
 
     def _event(self, event: Event) -> dict[str, Any]:
