@@ -52,6 +52,10 @@ if TYPE_CHECKING:
     from cagepose.model.shapes import Sphere as Sphere
     from cagepose.model.spring import Spring as Spring
     from cagepose.model.tolerances import Tolerances as Tolerances
+    from cagepose.questions.friction import FrictionLimits as FrictionLimits
+    from cagepose.questions.friction import NoMotion as NoMotion
+    from cagepose.questions.friction import friction_limits as friction_limits
+    from cagepose.questions.unanswered import Unanswered as Unanswered
     from cagepose.runs.critical import with_critical_friction as with_critical_friction
     from cagepose.runs.many import Runs as Runs
     from cagepose.runs.many import run_many as run_many
@@ -125,6 +129,8 @@ _HOMES = {
     "cagepose.model.shapes": ("Capsule", "Cone", "Convex", "Cylinder", "Disc", "Shape", "Sphere"),
     "cagepose.model.spring": ("Spring",),
     "cagepose.model.tolerances": ("Tolerances",),
+    "cagepose.questions.friction": ("FrictionLimits", "NoMotion", "friction_limits"),
+    "cagepose.questions.unanswered": ("Unanswered",),
     "cagepose.runs.critical": ("with_critical_friction",),
     "cagepose.runs.many": ("Runs", "run_many"),
     "cagepose.runs.proof": ("FreeMotion", "Proof"),
@@ -187,6 +193,7 @@ __all__ = [
     "Force",
     "Frame",
     "FreeMotion",
+    "FrictionLimits",
     "Hole",
     "Insertion",
     "JamChoice",
@@ -199,6 +206,7 @@ __all__ = [
     "ModeTree",
     "Moment",
     "Motion",
+    "NoMotion",
     "Object",
     "OtherOnset",
     "Parting",
@@ -222,12 +230,14 @@ __all__ = [
     "StudyFolderError",
     "StudyResults",
     "Tolerances",
+    "Unanswered",
     "Variant",
     "Variation",
     "__version__",
     "certificate",
     "check_certificate",
     "compare",
+    "friction_limits",
     "insertion",
     "load_certificates",
     "load_run",

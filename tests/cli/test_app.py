@@ -60,7 +60,7 @@ def test_the_version_is_that_of_the_package(command: Command) -> None:
     ("arguments", "message"),
     [
         (["rnu"], 'Unknown command "rnu". Did you mean "run"? Available commands: run, compare, play, insertion,'
-                  " check, plot, view, study, ... See: cagepose --help"),
+                  " ask, check, plot, view, ... See: cagepose --help"),
         (["run"], 'Command "run" parameter SCENE requires an argument. See: cagepose run --help'),
         (["run", "a.yaml", "--jsn"], "Unknown option: --jsn. Did you mean --json? See: cagepose run --help"),
         (["run", "a.yaml", "--set"], 'Command "run" parameter --set requires an argument. See: cagepose run --help'),

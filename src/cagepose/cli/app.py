@@ -51,6 +51,10 @@ COMMANDS = {
         "cagepose.cli.insertion_command:insertion_command",
         "How far a drive gets, with which force, where it could jam, and the misalignment it permits.",
     ),
+    "ask": (
+        "cagepose.cli.ask_command:ask",
+        "Ask one question, answered with its certainty, such as: how much friction does this need?",
+    ),
     "check": (
         "cagepose.cli.check_command:check_command",
         "Check a scene file without running it, or the proofs of a saved run.",

@@ -18,8 +18,8 @@ from cagepose.cli.styles import STYLES
 from cagepose.cli.tolerances import LEAST_GAP_WORK
 from cagepose.errors import printable
 from cagepose.files.units import LengthUnit
-from cagepose.files.words import LengthWords
-from cagepose.model.wording import components, duration, short
+from cagepose.files.words import LengthWords, friction_words
+from cagepose.model.wording import duration, short
 from cagepose.runs.cases import greatest_friction
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, STOPPED, PhaseRun, Run
@@ -134,19 +134,7 @@ class _Writer:
         motion = self.run.phases[-1].proof.motion
         if motion is None or self.run.failed:
             return ""
-        if motion.direction_world is not None:
-            return f"travel along ({components(motion.direction_world)})"
-        assert motion.axis_world is not None
-        assert motion.through_world is not None
-        line = (
-            f"({components(motion.axis_world)}) through ({self.words.lengths(motion.through_world)}) {self.words.unit}"
-        )
-        pitch = (
-            f", {self.words.lengths([motion.pitch_m])} {self.words.unit} along it per radian"
-            if motion.kind == "screw"
-            else ""
-        )
-        return f"{motion.kind} about {line}{pitch}"
+        return self.words.onset(motion)
 
 
 def _contact_texts(phase: PhaseRun, *, is_verbose: bool) -> list[str]:
@@ -186,13 +174,12 @@ def _proof(phase: PhaseRun) -> str:
 
 
 def _critical(run: Run) -> str:
-    scene, texts, greatest = run.scene, list[str](), 0.0
-    if scene.friction_of:
-        greatest = greatest_friction(scene, chosen_method(scene, run.method).friction(scene))
+    scene, texts = run.scene, list[str]()
+    scale = greatest_friction(scene, chosen_method(scene, run.method).friction(scene)) if scene.friction_of else None
     for phase in run.phases:
         least = phase.proof.critical_friction
         if least is None:
             continue
-        enough = f"{least / greatest:.7g} times each coefficient" if greatest > 0.0 else f"{least:.10g}"
-        texts.append(f"{phase.name}: {'no friction is enough' if math.isinf(least) else enough}")
+        enough = "no friction is enough" if math.isinf(least) else friction_words(least, scale)
+        texts.append(f"{phase.name}: {enough}")
     return ", ".join(texts)

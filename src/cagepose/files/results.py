@@ -23,7 +23,7 @@ KEYS = {"place_world": "at", "equally_stiff_n": "equally_stiff_normal"}
 """The fields whose key is another one."""
 LENGTHS, NUMBERS = ("_m", "_nm", "_j"), ("_n", "_s")
 """Units, at the end of a name: of what is told in the scene's unit of length, and of what stays as it is."""
-INFINITE = {"critical_friction": "none", "distance_m": None}
+INFINITE = {"critical_friction": "none", "balance": "none", "distance_m": None}
 """What stands for an infinite number, which JSON has not, in some fields; in all others, `UNBOUNDED`."""
 UNBOUNDED = "unbounded"
 

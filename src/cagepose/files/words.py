@@ -11,6 +11,7 @@ from cagepose.model.load import Load
 from cagepose.model.wording import components, short
 from cagepose.runs.changes import Seen
 from cagepose.runs.drives import way_of
+from cagepose.runs.proof import FreeMotion
 from cagepose.runs.run import Motion, PhaseRun
 
 SIDEWAYS_OF_NORMAL = 1e-9
@@ -50,6 +51,16 @@ class LengthWords:
             told.append(f"{short(math.degrees(angle), 6, 1e-10)} deg")
         return ", ".join(told)
 
+    def onset(self, motion: FreeMotion) -> str:
+        """Return how an object begins to move, as ``travel along (0, 1, 0)`` or ``turn about ... through ...``."""
+        if motion.direction_world is not None:
+            return f"travel along ({components(motion.direction_world)})"
+        assert motion.axis_world is not None
+        assert motion.through_world is not None
+        line = f"({components(motion.axis_world)}) through ({self.lengths(motion.through_world)}) {self.unit}"
+        pitch = f", {self.lengths([motion.pitch_m])} {self.unit} along it per radian" if motion.kind == "screw" else ""
+        return f"{motion.kind} about {line}{pitch}"
+
     def depth(self, load: Load, share: float) -> str:
         """Return how far a phase's drive got: the way of the one body that is driven, or the share of several."""
         if len(load.drive) == 1:
@@ -68,6 +79,16 @@ def force_words(normal: float, tangential: float) -> str:
         return "0"
     beside = f" + {tangential:.4g} friction" if tangential > SIDEWAYS_OF_NORMAL * normal else ""
     return f"{normal:.4g}{beside}"
+
+
+def friction_words(coefficient: float, scale: float | None, digits: int = 10) -> str:
+    """Return a coefficient of friction; where there are several, of which ``scale`` is the greatest, how many times
+    each of them.
+
+    >>> friction_words(0.12, None), friction_words(0.12, 0.2)
+    ('0.12', '0.6 times each coefficient')
+    """
+    return f"{coefficient / scale:.7g} times each coefficient" if scale else f"{coefficient:.{digits}g}"
 
 
 def force_notes(phase: PhaseRun) -> list[str]:

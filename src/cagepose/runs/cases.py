@@ -80,6 +80,24 @@ def cases_of(scene: Scene, friction: float, start: Pose | None = None, displaced
     )
 
 
+def with_greatest_friction(cases: Cases, greatest: float) -> Cases:
+    """Return a case of one in which ``greatest`` is the greatest coefficient of all contacts that there can be, and the
+    others keep their proportion to it; all are equal where there is no friction yet.
+    """
+    of_points, of_boxes = cases.point_frictions, cases.box_frictions
+    now = friction_of(float(cases.frictions[0]), of_points, of_boxes).greatest
+    if now == 0.0:
+        return cases._replace(
+            frictions=np.array([float(greatest)]),
+            point_frictions=np.full_like(of_points, math.nan),
+            box_frictions=np.full_like(of_boxes, math.nan),
+        )
+    times = greatest / now
+    return cases._replace(
+        frictions=times * cases.frictions, point_frictions=times * of_points, box_frictions=times * of_boxes
+    )
+
+
 def _own_frictions(scene: Scene, names: Sequence[str]) -> FloatArray:
     """Return the coefficients of friction of points, boxes and shapes, (n,): NaN for those without one."""
     return np.array([scene.friction_of.get(name, math.nan) for name in names])

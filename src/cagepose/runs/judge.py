@@ -10,30 +10,41 @@ from cagepose.kernels.stability.proof import ProofWorkspace, empty_proof_workspa
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.runs.cases import cases_of, part_of
+from cagepose.runs.cases import cases_of, part_of, with_greatest_friction
 from cagepose.runs.proof import Proof
 from cagepose.runs.run import Contact
 from cagepose.runs.solved import judged, written
 
 
 def judge_pose(
-    scene: Scene, pose: Pose, phase: int, friction: float, displaced: FloatArray | None = None
+    scene: Scene,
+    pose: Pose,
+    phase: int,
+    friction: float,
+    displaced: FloatArray | None = None,
+    greatest: float | None = None,
 ) -> tuple[Proof, tuple[Contact, ...]]:
     """Return the proof at a pose under the load of a phase, and the contacts with their forces. The bodies of the cage
-    stand still, displaced as for `cases_of`.
+    stand still, displaced as for `cases_of`. With ``greatest``, coefficients of friction are as in
+    `with_greatest_friction`.
 
     Raises
     ------
     IndexError
         The scene has no such phase.
     """
-    _, outcome = judged_workspace(scene, pose, phase, friction, displaced)
+    _, outcome = judged_workspace(scene, pose, phase, friction, displaced, greatest)
     contacts, proofs = judged(scene, written(outcome), [pose] * (phase + 1))
     return proofs[phase], tuple(contacts[phase])
 
 
 def judged_workspace(
-    scene: Scene, pose: Pose, phase: int, friction: float, displaced: FloatArray | None = None
+    scene: Scene,
+    pose: Pose,
+    phase: int,
+    friction: float,
+    displaced: FloatArray | None = None,
+    greatest: float | None = None,
 ) -> tuple[ProofWorkspace, Outcome]:
     """Judge a pose under the load of a phase, as `judge_pose`; return the memory of that as the kernel has left it, and
     what it wrote.
@@ -46,6 +57,8 @@ def judged_workspace(
     cage, at = _cage(scene, phase), empty_proof_workspace(scene.geometry)
     outcome = empty_outcome(scene.geometry, len(scene.loads), 1, 0)
     cases = cases_of(scene, friction, pose, displaced)
+    if greatest is not None:
+        cases = with_greatest_friction(cases, greatest)
     outcome.displaced[:] = cases.displaced
     at_pose.judge_start(phase, part_of(scene), cases, cage, at, outcome)
     n_freedoms = WRENCH + len(scene.loads[phase].press)

@@ -1,0 +1,17 @@
+"""``cagepose ask``: one question about a scene, one answer with its certainty; each question is a command below it."""
+
+from __future__ import annotations
+
+from cyclopts import App
+
+QUESTIONS = {
+    "friction": (
+        "cagepose.cli.ask_friction:ask_friction",
+        "From which coefficient of friction on a part can stay, and from which no motion can begin.",
+    ),
+}
+"""Where the command of each question is, and what it asks."""
+
+ask = App(name="ask", help_format="plaintext")
+for _name, (_home, _summary) in QUESTIONS.items():
+    ask.command(_home, name=_name, help=_summary)

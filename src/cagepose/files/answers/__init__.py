@@ -1,0 +1,1 @@
+"""Answers of `cagepose.questions` as people read them: `lines` in a module a question."""

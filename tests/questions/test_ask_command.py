@@ -1,0 +1,29 @@
+"""``cagepose ask``: it lists its questions, and each has its help."""
+
+from __future__ import annotations
+
+import pytest
+
+from cagepose.cli.app import main
+from cagepose.cli.ask_command import QUESTIONS
+
+
+@pytest.mark.parametrize("arguments", [["ask"], ["ask", "--help"]])
+def test_it_lists_every_question(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(arguments) == 0
+    listed = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    for name, (_, summary) in QUESTIONS.items():
+        assert f"{name} {summary}" in listed
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_every_question_has_its_help(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["ask", name, "--help"]) == 0
+    out = capsys.readouterr().out
+    assert f"Usage: cagepose ask {name}" in out
+    assert all(flag in out for flag in ("SCENE", "--set", "--json"))
+
+
+def test_an_unknown_question_ends_with_2_and_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["ask", "fricton"]) == 2
+    assert capsys.readouterr().err.startswith('cagepose: Unknown command "fricton". Did you mean "friction"?')
