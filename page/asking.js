@@ -4,6 +4,8 @@
 import { $, element } from "./words.js";
 
 const SETTLING_MS = 20;
+const NOT_FOUND = 404;
+export const LOST = "The viewer's server does not answer; start cagepose view again, and open the address that it prints.";
 
 export class Asker {
   constructor() {
@@ -35,7 +37,7 @@ export class Asker {
       }
     } catch (error) {
       if (!(error instanceof TypeError)) throw error; // what a lost connection is told by
-      this.complain(["The viewer's server does not answer; start cagepose view again."], "answer");
+      this.complain([LOST], "answer");
     } finally {
       this.now = null;
       $("busy").hidden = true;
@@ -55,4 +57,9 @@ export class Asker {
   }
 }
 
-export const post = (path, content) => fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(content) });
+// Where a viewer has ended and another one listens at its port, that does not know this page: it is lost like the first.
+export async function post(path, content) {
+  const response = await fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(content) });
+  if (response.status === NOT_FOUND) throw new TypeError(LOST);
+  return response;
+}

@@ -1,11 +1,10 @@
 // The scene's file: it is written when somebody says so, and looked at again and again, as other programs may write it.
 
-import { post } from "./asking.js";
+import { LOST, post } from "./asking.js";
 import { download } from "./panel.js";
 import { button, element } from "./words.js";
 
 const LOOK_MS = 1000; // between two looks at the file
-const GONE = "The viewer's server does not answer; start cagepose view again.";
 
 export class OnDisk {
   // `version` is that of the file with `text`, which this page goes on from. `offered` is that of another text of it, while
@@ -98,7 +97,7 @@ export class OnDisk {
         this.tell(answer.problems.join(" "));
       }
     } catch {
-      this.tell(GONE);
+      this.tell(LOST);
     } finally {
       this.isSaving = false;
     }
@@ -122,7 +121,7 @@ export class OnDisk {
       this.tell(response.ok ? `Saved as ${answer.name}; this page goes on with ${this.name}.` : answer.problems.join(" "),
         ...(response.ok ? [] : [button("another name", "", () => this.askName())]), button("\u2715", "close", () => this.tell("")));
     } catch {
-      this.tell(GONE);
+      this.tell(LOST);
     }
   }
 }

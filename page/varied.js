@@ -1,6 +1,6 @@
 // What comes of other values of one number: its study is run bit by bit beside everything else, and drawn as it grows.
 
-import { post } from "./asking.js";
+import { LOST, post } from "./asking.js";
 import { blankChart } from "./chart.js";
 import { norm, sub } from "./geometry.js";
 import { element } from "./words.js";
@@ -94,7 +94,7 @@ export class Varied {
       }
     } catch (error) {
       if (!(error instanceof TypeError)) throw error; // what a lost connection is told by
-      this.fail("The viewer's server does not answer; start cagepose view again.");
+      this.fail(LOST);
     }
   }
 

@@ -45,7 +45,9 @@ def server(scene: Path) -> Iterator[ViewServer]:
 
 def ask(server: ViewServer, path: str, question: object, **headers: str) -> tuple[int, Any]:
     connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=30)
-    connection.request("POST", path, json.dumps(question), {"Content-Type": "application/json", **headers})
+    connection.request(
+        "POST", server.root + path, json.dumps(question), {"Content-Type": "application/json", **headers}
+    )
     response = connection.getresponse()
     content = response.read()
     connection.close()

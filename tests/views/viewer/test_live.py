@@ -37,7 +37,7 @@ def expected_angles(*set_values: str) -> list[float]:
 
 def post(server: ViewServer, path: str, body: bytes, **headers: str) -> tuple[int, bytes]:
     connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=30)
-    connection.request("POST", path, body, {"Content-Type": "application/json", **headers})
+    connection.request("POST", server.root + path, body, {"Content-Type": "application/json", **headers})
     response = connection.getresponse()
     answer = response.status, response.read()
     connection.close()
@@ -180,19 +180,20 @@ def test_the_server_answers_nobody_who_comes_by_another_name_or_without_json(ser
 
 
 REFUSED = {
-    "another name": "POST /run HTTP/1.1\r\nHost: evil.example\r\nContent-Length: {length}\r\n\r\n",
-    "another path": "POST /nowhere HTTP/1.1\r\nHost: {host}\r\nContent-Length: {length}\r\n\r\n",
-    "no length": "POST /run HTTP/1.1\r\nHost: {host}\r\n\r\n",
-    "a length that is none": "POST /run HTTP/1.1\r\nHost: {host}\r\nContent-Length: -5\r\n\r\n",
+    "another name": "POST {root}/run HTTP/1.1\r\nHost: evil.example\r\nContent-Length: {length}\r\n\r\n",
+    "another path": "POST {root}/nowhere HTTP/1.1\r\nHost: {host}\r\nContent-Length: {length}\r\n\r\n",
+    "without the key": "POST /run HTTP/1.1\r\nHost: {host}\r\nContent-Length: {length}\r\n\r\n",
+    "no length": "POST {root}/run HTTP/1.1\r\nHost: {host}\r\n\r\n",
+    "a length that is none": "POST {root}/run HTTP/1.1\r\nHost: {host}\r\nContent-Length: -5\r\n\r\n",
 }
 
 
 @pytest.mark.parametrize("head", REFUSED.values(), ids=REFUSED)
 def test_what_a_refused_request_sent_is_not_read_as_the_next_one(server, head):
     host = f"127.0.0.1:{server.server_port}"
-    hidden = f"GET / HTTP/1.1\r\nHost: {host}\r\n\r\n"
+    hidden = f"GET {server.root}/ HTTP/1.1\r\nHost: {host}\r\n\r\n"
     with socket.create_connection(("127.0.0.1", server.server_port), timeout=30) as connection:
-        connection.sendall((head.format(host=host, length=len(hidden)) + hidden).encode())
+        connection.sendall((head.format(root=server.root, host=host, length=len(hidden)) + hidden).encode())
         answer = b"".join(iter(lambda: connection.recv(65536), b""))
     assert answer.count(b"HTTP/1.1 ") == 1
     assert answer.startswith((b"HTTP/1.1 403", b"HTTP/1.1 404", b"HTTP/1.1 422"))

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
+from urllib.parse import urlsplit
 from urllib.request import urlopen
 
 import pytest
@@ -54,11 +55,11 @@ def viewer(*options: str) -> Iterator[Viewer]:
 
 def post_and_hang_up(address: str) -> None:
     """Ask for a run and reset the connection at once, as a tab does that is closed while its slider moves."""
-    port = int(address.rstrip("/").rsplit(":", 1)[1])
+    port, path = urlsplit(address).port, urlsplit(address).path
     with socket.create_connection((HOST, port)) as caller:
         caller.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
         caller.sendall(
-            f"POST /run HTTP/1.1\r\nHost: {HOST}:{port}\r\nContent-Type: application/json\r\n"
+            f"POST {path}run HTTP/1.1\r\nHost: {HOST}:{port}\r\nContent-Type: application/json\r\n"
             "Content-Length: 2\r\n\r\n{}".encode()
         )
 
@@ -67,7 +68,7 @@ def test_a_taken_port_gives_the_next_free_one_and_says_so():
     with socket.create_server((HOST, free_port())) as taken:
         port = taken.getsockname()[1]
         with viewer("--port", str(port)) as shown:
-            assert shown.said[0] == f"port {port} is in use; using {shown.address.rstrip('/').rsplit(':', 1)[1]}\n"
+            assert shown.said[0] == f"port {port} is in use; using {urlsplit(shown.address).port}\n"
             with urlopen(shown.address, timeout=10) as answer:
                 assert b'id="scene"' in answer.read()
             assert shown.end() == ENDED

@@ -3,7 +3,8 @@ or a hand pulls.
 
 The server keeps nothing between two questions, so that windows cannot disturb each other: each sends its text and
 values. It answers only who names it by its own name, and takes values only as JSON, which a page from elsewhere cannot
-send: no other page that is open in the same browser can use it.
+send: no other page that is open in the same browser can use it. What it serves lies below a folder with a random name,
+which stands in the address: nobody else who is logged in on the same machine can use it either.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import secrets
 import sys
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -22,6 +24,7 @@ from cagepose.views.viewer.editing import Desk
 
 PORTS_TRIED = 50
 """From the first one up."""
+KEY_BYTES = 12
 MAX_BODY_BYTES = 2 * MAX_FILE_BYTES
 """A text has escapes for its line ends and quotes on its way."""
 LOOPBACK = ("127.0.0.1", "localhost")
@@ -39,12 +42,13 @@ class ViewServer(ThreadingHTTPServer):
         self.page = page.encode()
         self.desk = desk
         super().__init__((host, port), _Answers)
+        self.root = f"/{secrets.token_urlsafe(KEY_BYTES)}"
         self.names = {f"{name}:{self.server_port}" for name in LOOPBACK} if host in LOOPBACK else None
 
     @property
     def address(self) -> str:
         """Where a browser finds it."""
-        return f"http://{self.server_address[0]!s}:{self.server_port}/"
+        return f"http://{self.server_address[0]!s}:{self.server_port}{self.root}/"
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Tell of what went wrong, but not of a tab that was closed while its answer was on the way."""
@@ -78,8 +82,8 @@ class _Answers(BaseHTTPRequestHandler):
     def do_GET(self) -> None:
         if not self._is_meant():
             return
-        if self.path != "/":
-            self._send(HTTPStatus.NOT_FOUND, "text/plain", b"there is one page, at /\n")
+        if self.path != f"{self.server.root}/":
+            self._send(HTTPStatus.NOT_FOUND, "text/plain", b"open the address that cagepose view printed\n")
             return
         self._send(HTTPStatus.OK, "text/html", self.server.page)
 
@@ -87,7 +91,8 @@ class _Answers(BaseHTTPRequestHandler):
         if not self._is_meant():
             return
         desk = self.server.desk
-        answer = None if desk is None else desk.answers.get(self.path)
+        name = self.path.removeprefix(self.server.root)
+        answer = None if desk is None or name == self.path else desk.answers.get(name)
         if desk is None or answer is None:
             self.close_connection = True  # what was sent is left unread, and must not be taken for the next request
             self._send(HTTPStatus.NOT_FOUND, "text/plain", b"nothing can be changed here\n")
