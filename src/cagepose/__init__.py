@@ -53,8 +53,12 @@ if TYPE_CHECKING:
     from cagepose.model.spring import Spring as Spring
     from cagepose.model.tolerances import Tolerances as Tolerances
     from cagepose.questions.friction import FrictionLimits as FrictionLimits
-    from cagepose.questions.friction import NoMotion as NoMotion
     from cagepose.questions.friction import friction_limits as friction_limits
+    from cagepose.questions.no_motion import NoMotion as NoMotion
+    from cagepose.questions.tipping import LiftOff as LiftOff
+    from cagepose.questions.tipping import Loss as Loss
+    from cagepose.questions.tipping import Tipping as Tipping
+    from cagepose.questions.tipping import tipping as tipping
     from cagepose.questions.unanswered import Unanswered as Unanswered
     from cagepose.runs.critical import with_critical_friction as with_critical_friction
     from cagepose.runs.many import Runs as Runs
@@ -129,7 +133,9 @@ _HOMES = {
     "cagepose.model.shapes": ("Capsule", "Cone", "Convex", "Cylinder", "Disc", "Shape", "Sphere"),
     "cagepose.model.spring": ("Spring",),
     "cagepose.model.tolerances": ("Tolerances",),
-    "cagepose.questions.friction": ("FrictionLimits", "NoMotion", "friction_limits"),
+    "cagepose.questions.friction": ("FrictionLimits", "friction_limits"),
+    "cagepose.questions.no_motion": ("NoMotion",),
+    "cagepose.questions.tipping": ("LiftOff", "Loss", "Tipping", "tipping"),
     "cagepose.questions.unanswered": ("Unanswered",),
     "cagepose.runs.critical": ("with_critical_friction",),
     "cagepose.runs.many": ("Runs", "run_many"),
@@ -198,7 +204,9 @@ __all__ = [
     "Insertion",
     "JamChoice",
     "KernelsError",
+    "LiftOff",
     "Load",
+    "Loss",
     "Margin",
     "Misalignment",
     "MisalignmentEnd",
@@ -229,6 +237,7 @@ __all__ = [
     "Study",
     "StudyFolderError",
     "StudyResults",
+    "Tipping",
     "Tolerances",
     "Unanswered",
     "Variant",
@@ -249,6 +258,7 @@ __all__ = [
     "run_many",
     "save_run",
     "save_scene",
+    "tipping",
     "with_critical_friction",
 ]
 

@@ -9,6 +9,10 @@ QUESTIONS = {
         "cagepose.cli.ask_friction:ask_friction",
         "From which coefficient of friction on a part can stay, and from which no motion can begin.",
     ),
+    "tipping": (
+        "cagepose.cli.ask_tipping:ask_tipping",
+        "How large a force at a place may become until the part tips, slides or lifts off.",
+    ),
 }
 """Where the command of each question is, and what it asks."""
 

@@ -12,7 +12,7 @@ import numpy as np
 from cagepose.kernels.algebra.record import Rows, empty_record
 from cagepose.kernels.algebra.tolerances import kernel_tolerances
 from cagepose.kernels.contact.friction import friction_of
-from cagepose.kernels.contact.loads import PhaseLoad
+from cagepose.kernels.contact.loads import DEAD_MOMENT, PhaseLoad
 from cagepose.kernels.contact.metric import Body
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases, Part
@@ -22,7 +22,7 @@ from cagepose.model.geometry import cage_bodies
 from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.runs.actions import actions_of
+from cagepose.runs.actions import Wrench, actions_of
 from cagepose.runs.drives import at_start, drives_of
 from cagepose.runs.tolerances import LEAST_RADIUS_OF_GYRATION
 
@@ -96,6 +96,17 @@ def with_greatest_friction(cases: Cases, greatest: float) -> Cases:
     return cases._replace(
         frictions=times * cases.frictions, point_frictions=times * of_points, box_frictions=times * of_boxes
     )
+
+
+def with_wrench(cases: Cases, phase: int, wrench: Wrench) -> Cases:
+    """Return a case of one in which only a force and a moment act in a phase, whose directions are of the world."""
+    known = np.asarray(cases.actions)
+    actions = np.zeros((1, known.shape[1], max(known.shape[2], 2)), known.dtype)
+    actions[:, :, : known.shape[2]] = known
+    acting = actions[0, phase]
+    acting[:] = 0
+    acting["vector"][0], acting["vector"][1], acting["kind"][1] = wrench.force, wrench.moment, DEAD_MOMENT
+    return cases._replace(actions=cast(Rows[Rows[PhaseLoad]], actions))
 
 
 def _own_frictions(scene: Scene, names: Sequence[str]) -> FloatArray:
