@@ -54,6 +54,8 @@ if TYPE_CHECKING:
     from cagepose.model.tolerances import Tolerances as Tolerances
     from cagepose.questions.friction import FrictionLimits as FrictionLimits
     from cagepose.questions.friction import friction_limits as friction_limits
+    from cagepose.questions.jam import Jam as Jam
+    from cagepose.questions.jam import jam as jam
     from cagepose.questions.no_motion import NoMotion as NoMotion
     from cagepose.questions.tipping import LiftOff as LiftOff
     from cagepose.questions.tipping import Loss as Loss
@@ -134,6 +136,7 @@ _HOMES = {
     "cagepose.model.spring": ("Spring",),
     "cagepose.model.tolerances": ("Tolerances",),
     "cagepose.questions.friction": ("FrictionLimits", "friction_limits"),
+    "cagepose.questions.jam": ("Jam", "jam"),
     "cagepose.questions.no_motion": ("NoMotion",),
     "cagepose.questions.tipping": ("LiftOff", "Loss", "Tipping", "tipping"),
     "cagepose.questions.unanswered": ("Unanswered",),
@@ -202,6 +205,7 @@ __all__ = [
     "FrictionLimits",
     "Hole",
     "Insertion",
+    "Jam",
     "JamChoice",
     "KernelsError",
     "LiftOff",
@@ -248,6 +252,7 @@ __all__ = [
     "compare",
     "friction_limits",
     "insertion",
+    "jam",
     "load_certificates",
     "load_run",
     "load_scene",

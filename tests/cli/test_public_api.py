@@ -21,7 +21,7 @@ MissingExtraError ModeTree Moment Motion Object OtherOnset Parting PhaseRun Play
 Proof Run run run_many RunFileError Runs save_run save_scene Scene SceneError SceneFileError Shape Sphere Spring
 StopChoice Study StudyFolderError StudyResults Tolerances Variant __version__
 Variation with_critical_friction
-FrictionLimits friction_limits LiftOff Loss NoMotion Tipping tipping Unanswered
+FrictionLimits friction_limits Jam jam LiftOff Loss NoMotion Tipping tipping Unanswered
 """
 
 

@@ -13,6 +13,10 @@ QUESTIONS = {
         "cagepose.cli.ask_tipping:ask_tipping",
         "How large a force at a place may become until the part tips, slides or lifts off.",
     ),
+    "jam": (
+        "cagepose.cli.ask_jam:ask_jam",
+        "From which friction on a guided part jams, however hard it is driven or pushed.",
+    ),
 }
 """Where the command of each question is, and what it asks."""
 

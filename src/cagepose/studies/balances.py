@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import islice, product
 
 import numpy as np
@@ -51,9 +51,8 @@ def balances_of(run: Run, phase: int) -> Balances | None:
         return None
     if ended.verdict not in AT_REST | STOPPED or ended.proof.verdict == "moves" or not ended.contacts:
         return None
-    contacts, groups = _counting_contacts(run, phase)
-    choices = list(islice(product(*groups), CHOICES_LIMIT + 1))
-    if len(choices) > CHOICES_LIMIT:
+    contacts, choices = choices_of(_told_contacts(run, phase))
+    if choices is None:
         return None
     cones = _cones(run, phase, [*contacts, *places_on_arcs(run, phase)])
     load, size_n = _load(run, phase, cones)
@@ -140,20 +139,25 @@ class Balances:
             yield least if least > LEAST_EXTRA_LOAD else 0.0, greatest if greatest < GREATEST_FORCE else math.inf
 
 
-def _counting_contacts(run: Run, phase: int) -> tuple[list[Contact], list[list[int]]]:
-    """Return the contacts that count, and groups of their numbers, of which one counts at a time.
+def choices_of(contacts: Iterable[Contact]) -> tuple[list[Contact], list[tuple[int, ...]] | None]:
+    """Return the contacts that count, and all choices of one of each group, by their numbers; None: more than 729."""
+    counting = [contact for contact in contacts if contact.group != NEVER_COUNTS]
+    groups = dict[int | None, list[int]]()
+    for number, contact in enumerate(counting):
+        groups.setdefault(contact.group, []).append(number)
+    choices = list(islice(product(*groups.values()), CHOICES_LIMIT + 1))
+    return counting, None if len(choices) > CHOICES_LIMIT else choices
 
-    A run that was saved before contacts told their groups is asked anew at its pose.
+
+def _told_contacts(run: Run, phase: int) -> tuple[Contact, ...]:
+    """Return the contacts at the end of a phase. A run that was saved before contacts told their groups is asked anew
+    at its pose.
     """
     contacts = run.phases[phase].contacts
     if any(contact.group is None for contact in contacts):
         friction = chosen_method(run.scene, run.method).friction(run.scene)
         contacts = judge_pose(run.scene, run.phases[phase].pose, phase, friction, displaced_after(run, phase))[1]
-    counting = [contact for contact in contacts if contact.group != NEVER_COUNTS]
-    groups = dict[int | None, list[int]]()
-    for number, contact in enumerate(counting):
-        groups.setdefault(contact.group, []).append(number)
-    return counting, list(groups.values())
+    return contacts
 
 
 def _cones(run: Run, phase: int, contacts: list[Contact]) -> ContactCones:

@@ -10,6 +10,7 @@ The kernels ask the same along a run, for the least coefficient of all places. T
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -150,21 +151,28 @@ def jam_friction_along(run: Run, phase: int) -> FloatArray:
     """
     known = DriveContacts(run, phase)
     greatest, rows = greatest_friction(run.scene, known.friction), known.rows()
-    found = [_least_of_choices(known, row, greatest) for row in rows]
+    found = [_least_at(known, row, greatest) for row in rows]
     return np.repeat(found, np.diff([*rows, len(known.curve.share)]))
 
 
-def _least_of_choices(known: DriveContacts, row: int, greatest: float) -> float:
+def _least_at(known: DriveContacts, row: int, greatest: float) -> float:
     try:
         contacts = known.at_row(row)
     except CertificateError:
         return math.nan
-    choices, least = contacts.choices(), math.inf
+    choices = contacts.choices()
     if choices is None:
         return math.nan
-    for choice in choices:
-        question = jam_question(contacts, choice)
-        parts = question.friction / greatest if greatest > 0.0 else np.ones(len(choice))
+    return least_of_choices((jam_question(contacts, choice) for choice in choices), greatest)
+
+
+def least_of_choices(questions: Iterable[JamQuestion], greatest: float) -> float:
+    """Return the least coefficient of all choices of faces, as `least_jam_friction`: of the contact with the greatest
+    one; with no friction yet, all are equal.
+    """
+    least = math.inf
+    for question in questions:
+        parts = question.friction / greatest if greatest > 0.0 else np.ones(len(question.friction))
         least = min(least, least_jam_friction(question._replace(friction=parts), min(least, MOST_JAM_FRICTION)))
     return least
 
