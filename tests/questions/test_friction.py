@@ -137,11 +137,12 @@ def test_more_friction_may_bring_a_motion_back_and_each_motion_is_one_of_coulomb
 
 
 def test_own_coefficients_keep_their_proportion() -> None:
-    """On a slope of 30 deg, with all of the block's friction at its own coefficient, or twice as much elsewhere."""
+    """On a slope of 30 deg a block with a coefficient of its own."""
     scene = load_scene(SCENES / "slope.yaml", ["friction.coefficient=0.9", "friction.of.block=0.6"])
     found = limits_of(run(scene))
     assert (found.has_several, found.present) == (True, 0.6)
     assert found.no_motion[0].shown_from == pytest.approx(math.tan(math.radians(30.0)), rel=2e-6)
+    assert found.no_motion[0].motion_at == pytest.approx(math.tan(math.radians(30.0)), rel=2e-6)
 
 
 def test_what_is_not_held_by_contacts_has_no_such_friction() -> None:
