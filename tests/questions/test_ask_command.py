@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from cagepose.cli.app import main
@@ -27,3 +29,10 @@ def test_every_question_has_its_help(name: str, capsys: pytest.CaptureFixture[st
 def test_an_unknown_question_ends_with_2_and_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["ask", "fricton"]) == 2
     assert capsys.readouterr().err.startswith('cagepose: Unknown command "fricton". Did you mean "friction"?')
+
+
+def test_the_shell_completes_every_question(tmp_path: Path) -> None:
+    script = tmp_path / "completion.bash"
+    assert main(["--install-completion", "--shell", "bash", "--output", str(script)]) == 0
+    text = script.read_text(encoding="utf-8")
+    assert [name for name in QUESTIONS if f'"ask {name}")' not in text] == []
