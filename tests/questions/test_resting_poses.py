@@ -1,0 +1,198 @@
+"""Rests on a plane: closed forms, symmetries, Goldberg's estimates, parts that roll in small steps, and runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import product
+
+import numpy as np
+import pytest
+
+from cagepose.errors import SceneError
+from cagepose.model.box import Box
+from cagepose.model.cage import Cage
+from cagepose.model.checks import FloatArray
+from cagepose.model.hull import Hull, hull_of
+from cagepose.model.load import Load
+from cagepose.model.parts import Object
+from cagepose.model.pose import Pose, turn_from_z
+from cagepose.model.scene import Scene
+from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Sphere
+from cagepose.questions.resting import resting_poses
+from cagepose.runs.many import run_many
+from cagepose.runs.variation import Variation
+from questions.rolled_in_steps import goldberg_shares, shares_of_faces, spread_downs
+
+
+def drawn_hull(random: np.random.Generator, n_corners: int) -> Convex:
+    return Convex(random.normal(size=(n_corners, 3)) * (0.03, 0.03, 0.02))
+
+
+def shares_found(part: Object, hull: Hull) -> FloatArray:
+    """The probability of each face of a hull, (n_faces,)."""
+    shares = np.zeros(len(hull.faces))
+    for pose in resting_poses(part).poses:
+        face = int(np.argmax(hull.normals @ pose.down_object))
+        assert hull.normals[face] @ pose.down_object > 1.0 - 1e-12
+        shares[face] += pose.probability
+    return shares
+
+
+def test_a_box_rests_on_each_face_as_often_as_the_face_is_wide_seen_from_its_middle() -> None:
+    """The solid angle of a rectangle a x b seen from its box's middle: 4 arctan(ab / (c d)), d the diagonal."""
+    size = np.array([0.01, 0.02, 0.03])
+    poses = resting_poses(Object([Box(size)])).poses
+    assert len(poses) == 6
+    for pose in poses:
+        axis = int(np.argmax(np.abs(pose.down_object)))
+        a, b = np.delete(size, axis)
+        solid = 4.0 * math.atan(a * b / (size[axis] * math.sqrt(size @ size)))
+        assert pose.probability == pytest.approx(solid / (4.0 * math.pi), abs=1e-12)
+        assert pose.height_m == pytest.approx(size[axis] / 2.0, rel=1e-12)
+        assert pose.margin_m == pytest.approx(min(a, b) / 2.0, rel=1e-12)
+        assert pose.rise_m == pytest.approx((math.hypot(size[axis], min(a, b)) - size[axis]) / 2.0, rel=1e-9)
+        assert pose.rolls == "no"
+        lowest = pose.pose.transform(np.array(list(product((-0.5, 0.5), repeat=3))) * size)
+        assert lowest[:, 2].min() == pytest.approx(0.0, abs=1e-15)
+        assert np.abs(pose.pose.transform(np.zeros(3))[:2]).max() < 1e-15
+
+
+def test_a_cylinder_lies_on_its_side_in_a_row_of_poses_or_stands_on_an_end() -> None:
+    radius, length = 0.01, 0.04
+    found = resting_poses(Object(shapes=[Cylinder(radius, length)]))
+    side, *ends = found.poses
+    assert not found.is_exact
+    assert len(ends) == 2
+    assert side.rolls == "about an axis"
+    assert np.abs(side.axis_object) == pytest.approx((0.0, 0.0, 1.0), abs=1e-9)
+    assert (side.height_m, side.margin_m) == pytest.approx((radius, length / 2.0))
+    assert side.rise_m == pytest.approx(math.hypot(radius, length / 2.0) - radius)
+    share = (1.0 - length / 2.0 / math.hypot(radius, length / 2.0)) / 2.0
+    for end in ends:
+        assert end.rolls == "no"
+        assert end.probability == pytest.approx(share, abs=1e-3)
+        assert (end.height_m, end.margin_m) == pytest.approx((length / 2.0, radius))
+        assert end.rise_m == pytest.approx(math.hypot(radius, length / 2.0) - length / 2.0, rel=1e-3)
+
+
+def test_a_cone_lies_along_its_side_at_the_height_of_its_centre_over_that() -> None:
+    radius, length = 0.02, 0.04
+    side, base = resting_poses(Object(shapes=[Cone(radius, 0.0, length)])).poses
+    slant = math.hypot(radius, length)
+    assert side.rolls == "about an axis"
+    assert np.abs(side.axis_object) == pytest.approx((0.0, 0.0, 1.0), abs=1e-6)
+    assert side.height_m == pytest.approx(0.75 * length * radius / slant, rel=1e-8)
+    assert side.margin_m == pytest.approx(slant - 0.75 * length * length / slant, rel=1e-6)
+    assert (base.height_m, base.margin_m) == pytest.approx((length / 4.0, radius))
+    assert base.probability == pytest.approx((1.0 - length / 4.0 / math.hypot(radius, length / 4.0)) / 2.0, abs=1e-3)
+
+
+def test_a_ball_rests_anyhow_and_a_weighted_one_in_one_pose() -> None:
+    (anyhow,) = resting_poses(Object(shapes=[Sphere(0.01)])).poses
+    assert (anyhow.rolls, anyhow.axis_object, anyhow.probability) == ("all ways", None, pytest.approx(1.0))
+    assert math.isinf(anyhow.rise_m)
+    weight = np.array([0.0003, 0.0001, 0.002])
+    (upright,) = resting_poses(Object(shapes=[Sphere(0.01)], center_of_gravity_m=weight)).poses
+    assert upright.rolls == "no"
+    assert upright.down_object == pytest.approx(weight / np.linalg.norm(weight), abs=1e-3)
+    assert upright.height_m == pytest.approx(0.01 - np.linalg.norm(weight), rel=1e-6)
+
+
+def test_a_weighted_roller_lies_with_its_weight_below() -> None:
+    weight = np.array([0.0003, 0.0001, 0.0])
+    side = resting_poses(Object(shapes=[Cylinder(0.01, 0.04)], center_of_gravity_m=weight)).poses[0]
+    assert side.rolls == "no"
+    assert side.down_object == pytest.approx(weight / np.linalg.norm(weight), abs=1e-3)
+    assert side.height_m == pytest.approx(0.01 - np.linalg.norm(weight), rel=1e-6)
+
+
+def test_a_capsule_has_one_row() -> None:
+    (side,) = resting_poses(Object(shapes=[Capsule(0.01, 0.04)])).poses
+    assert side.rolls == "about an axis"
+    assert (side.height_m, side.margin_m) == pytest.approx((0.01, 0.02))
+
+
+def test_rests_of_hulls_are_those_of_small_steps(cases: Callable[[int, int], int]) -> None:
+    """Each share within five standard deviations of what 2000 starts give, and of steps of 0.004 rad that may miss the
+    sharpest bends."""
+    random = np.random.default_rng(47)
+    for _ in range(cases(4, 60)):
+        shape = drawn_hull(random, int(random.integers(5, 16)))
+        part = Object(shapes=[shape])
+        hull = hull_of(shape.vertices_m)
+        shares = shares_found(part, hull)
+        stepped = shares_of_faces(hull, part.center_of_gravity_m, spread_downs(2000, random))
+        assert np.abs(shares - stepped).max() < 5.0 * math.sqrt(0.25 / 2000) / 2.0 + 0.01
+        assert shares.sum() == pytest.approx(1.0, abs=1e-12)
+
+
+def test_rests_of_hulls_are_nearly_goldbergs_and_on_the_same_faces(cases: Callable[[int, int], int]) -> None:
+    """Goldberg's estimate lets a part whose centre of gravity is over a face end there, without asking through which
+    corners it gets there; where each corner stands above its own cell, the two are one."""
+    random = np.random.default_rng(48)
+    n_same = 0
+    for _ in range(cases(20, 400)):
+        shape = drawn_hull(random, int(random.integers(4, 12)))
+        part = Object(shapes=[shape])
+        hull = hull_of(shape.vertices_m)
+        shares, theirs = shares_found(part, hull), goldberg_shares(hull, part.center_of_gravity_m)
+        assert ((shares > 0.0) == (theirs > 0.0)).all()
+        assert np.abs(shares - theirs).max() < 0.15
+        n_same += np.abs(shares - theirs).max() < 1e-9
+    assert n_same > 0
+
+
+def test_runs_from_any_orientation_end_in_these_poses_as_often(cases: Callable[[int, int], int]) -> None:
+    random = np.random.default_rng(49)
+    shape = drawn_hull(random, 7)
+    part = Object(shapes=[shape], pose=Pose((0.0, 0.0, 0.1)))
+    floor = Box((1.0, 1.0, 0.1), pose_object_box=Pose((0.0, 0.0, -0.05)), name="floor")
+    scene = Scene(part, Cage(shapes=[floor]), [Load("weight", gravity=(0, 0, -9.81))], metric="drag")
+    downs = spread_downs(cases(100, 2000), random)
+    starts = [Pose(quaternion_wxyz=turn_from_z(-down) * (1, -1, -1, -1)) for down in downs]
+    ended = run_many(
+        scene,
+        Variation(
+            object_position_m=np.tile((0.0, 0.0, 0.1), (len(downs), 1)),
+            object_euler_zyx=np.array([start.euler_zyx for start in starts]),
+        ),
+    )
+    hull = hull_of(shape.vertices_m)
+    down = np.array([-Pose(quaternion_wxyz=q).rotation[2] for q in ended.quaternion_wxyz[:, 0]])
+    cosines = down @ hull.normals.T
+    assert (ended.verdict == "rests").all()
+    assert cosines.max(axis=1).min() > 1.0 - 1e-9
+    counted = np.bincount(np.argmax(cosines, axis=1), minlength=len(hull.faces)) / len(downs)
+    shares = shares_found(part, hull)
+    assert counted[shares == 0.0].sum() == 0.0
+    assert np.abs(counted - shares).max() < 4.0 * math.sqrt(0.25 / len(downs))
+
+
+def test_a_turned_moved_and_grown_part_rests_as_before() -> None:
+    random = np.random.default_rng(50)
+    corners = random.normal(size=(9, 3)) * 0.02
+    turn = Pose(random.normal(size=3), random.normal(size=4))
+    before = resting_poses(Object(shapes=[Convex(corners)])).poses
+    after = resting_poses(Object(shapes=[Convex(3.0 * turn.transform(corners))])).poses
+    assert len(before) == len(after)
+    for one, other in zip(before, after, strict=True):
+        assert other.probability == pytest.approx(one.probability, abs=1e-9)
+        assert other.down_object == pytest.approx(turn.rotation @ one.down_object, abs=1e-9)
+        assert (other.height_m, other.margin_m, other.rise_m) == pytest.approx(
+            (3.0 * one.height_m, 3.0 * one.margin_m, 3.0 * one.rise_m)
+        )
+
+
+def test_touching_parts_are_named() -> None:
+    part = Object(
+        [Box((0.02, 0.02, 0.005), name="head")], shapes=[Cylinder(0.004, 0.06, Pose((0, 0, 0.0325)), "shank")]
+    )
+    on = {pose.touching for pose in resting_poses(part).poses}
+    assert ("head",) in on
+    assert ("head", "shank") in on
+
+
+def test_a_centre_of_gravity_outside_is_refused() -> None:
+    with pytest.raises(SceneError, match="does not lie within the hull"):
+        resting_poses(Object([Box((0.01, 0.01, 0.01))], center_of_gravity_m=(0.0, 0.0, 0.02)))
