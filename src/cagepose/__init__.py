@@ -57,6 +57,9 @@ if TYPE_CHECKING:
     from cagepose.questions.jam import Jam as Jam
     from cagepose.questions.jam import jam as jam
     from cagepose.questions.no_motion import NoMotion as NoMotion
+    from cagepose.questions.resting import RestingPose as RestingPose
+    from cagepose.questions.resting import RestingPoses as RestingPoses
+    from cagepose.questions.resting import resting_poses as resting_poses
     from cagepose.questions.tipping import LiftOff as LiftOff
     from cagepose.questions.tipping import Loss as Loss
     from cagepose.questions.tipping import Tipping as Tipping
@@ -139,6 +142,7 @@ _HOMES = {
     "cagepose.questions.jam": ("Jam", "jam"),
     "cagepose.questions.no_motion": ("NoMotion",),
     "cagepose.questions.tipping": ("LiftOff", "Loss", "Tipping", "tipping"),
+    "cagepose.questions.resting": ("RestingPose", "RestingPoses", "resting_poses"),
     "cagepose.questions.unanswered": ("Unanswered",),
     "cagepose.runs.critical": ("with_critical_friction",),
     "cagepose.runs.many": ("Runs", "run_many"),
@@ -228,6 +232,8 @@ __all__ = [
     "Press",
     "Problem",
     "Proof",
+    "RestingPose",
+    "RestingPoses",
     "Run",
     "RunFileError",
     "Runs",
@@ -259,6 +265,7 @@ __all__ = [
     "margin",
     "play",
     "press_limits",
+    "resting_poses",
     "run",
     "run_many",
     "save_run",

@@ -22,6 +22,7 @@ Proof Run run run_many RunFileError Runs save_run save_scene Scene SceneError Sc
 StopChoice Study StudyFolderError StudyResults Tolerances Variant __version__
 Variation with_critical_friction
 FrictionLimits friction_limits Jam jam LiftOff Loss NoMotion Tipping tipping Unanswered
+RestingPose RestingPoses resting_poses
 """
 
 

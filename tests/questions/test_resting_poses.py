@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from cagepose.cli.app import main
 from cagepose.errors import SceneError
+from cagepose.files.scene_file import load_scene
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
@@ -23,6 +27,8 @@ from cagepose.questions.resting import resting_poses
 from cagepose.runs.many import run_many
 from cagepose.runs.variation import Variation
 from questions.rolled_in_steps import goldberg_shares, shares_of_faces, spread_downs
+
+SCENES = Path(__file__).resolve().parents[2] / "scenes"
 
 
 def drawn_hull(random: np.random.Generator, n_corners: int) -> Convex:
@@ -196,3 +202,39 @@ def test_touching_parts_are_named() -> None:
 def test_a_centre_of_gravity_outside_is_refused() -> None:
     with pytest.raises(SceneError, match="does not lie within the hull"):
         resting_poses(Object([Box((0.01, 0.01, 0.01))], center_of_gravity_m=(0.0, 0.0, 0.02)))
+
+
+def test_a_rounded_plate_stands_on_its_narrow_sides_where_these_are_flat() -> None:
+    """66 x 2 x 142 mm and a radius of 3 mm about it: the flat of a narrow side is 2 mm wide, and over its edge the
+    centre of gravity is raised to sqrt(33^2 + 1) + 3 mm.
+    """
+    corners = np.array(list(product((-0.033, 0.033), (-0.001, 0.001), (-0.071, 0.071))))
+    poses = resting_poses(Object(shapes=[Convex(corners, 0.003)])).poses
+    assert [pose.height_m for pose in poses] == pytest.approx([0.004, 0.004, 0.036, 0.036, 0.074, 0.074])
+    for pose in poses[2:]:
+        assert pose.margin_m == pytest.approx(0.001)
+        half = pose.height_m - 0.003
+        assert pose.rise_m == pytest.approx(math.hypot(half, 0.001) - half, rel=0.01)
+
+
+def test_the_command_prints_a_row_for_each_pose_and_the_document_has_the_same(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = SCENES / "gripper.yaml"
+    assert main(["ask", "resting", str(path)]) == 0
+    shown = capsys.readouterr().out
+    assert main(["ask", "resting", str(path), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    found = resting_poses(load_scene(path).object).poses
+    assert len(document["poses"]) == len(found) == 6
+    for told, pose in zip(document["poses"], found, strict=True):
+        assert told["probability"] == pose.probability
+        assert told["height"] == pytest.approx(1000.0 * pose.height_m)
+        assert told["touching"] == list(pose.touching)
+        assert f"{100.0 * pose.probability:.4g} %" in shown
+
+
+def test_the_command_refuses_a_centre_of_gravity_outside(capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["ask", "resting", str(SCENES / "ladder.yaml"), "--set", "object.center_of_gravity[0]=9000"]
+    assert main(arguments) == 2
+    assert capsys.readouterr().err.startswith("object.center_of_gravity: does not lie within the hull")

@@ -17,6 +17,10 @@ QUESTIONS = {
         "cagepose.cli.ask_jam:ask_jam",
         "From which friction on a guided part jams, however hard it is driven or pushed.",
     ),
+    "resting": (
+        "cagepose.cli.ask_resting:ask_resting",
+        "In which poses a part comes to rest, how firmly, and how often it ends in each.",
+    ),
 }
 """Where the command of each question is, and what it asks."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Protocol, TypeVar
+from typing import TYPE_CHECKING, Annotated, Protocol, TypeVar, runtime_checkable
 
 from cyclopts import Parameter
 
@@ -32,6 +32,14 @@ class AnswerModule(Protocol[Told]):
 
     def lines(self, answer: Told, words: LengthWords, /) -> list[tuple[str, str]]:
         """Return the answer as people read it: names and texts."""
+
+
+@runtime_checkable
+class TableModule(Protocol[Told]):
+    """One whose answer has rows, too."""
+
+    def table(self, answer: Told, words: LengthWords, /) -> list[list[str]]:
+        """Return rows of texts for people, the first one the header."""
 
 
 @dataclass(frozen=True)
@@ -102,11 +110,19 @@ def print_answer(
     from rich.text import Text
 
     from cagepose.cli.console import print_all
+    from cagepose.cli.styles import plain_table
     from cagepose.files.words import LengthWords
 
-    table = Table.grid(padding=(0, 2))
-    words = LengthWords(unit, size_m)
-    lines = [("no answer", answer.unanswered)] if isinstance(answer, Unanswered) else answers.lines(answer, words)
-    for title, text in lines:
-        table.add_row(Text(title), Text(text, overflow="fold"))
-    print_all(Text(name), "", table)
+    words, grid, tables = LengthWords(unit, size_m), Table.grid(padding=(0, 2)), list[Table]()
+    if isinstance(answer, Unanswered):
+        told = [("no answer", answer.unanswered)]
+    else:
+        told = answers.lines(answer, words)
+        if isinstance(answers, TableModule):
+            head, *rows = answers.table(answer, words)
+            tables.append(plain_table(*head))
+            for row in rows:
+                tables[0].add_row(*map(Text, row))
+    for title, text in told:
+        grid.add_row(Text(title), Text(text, overflow="fold"))
+    print_all(Text(name), "", grid, *(part for table in tables for part in ("", table)))

@@ -14,7 +14,7 @@ from cagepose.model.checks import FloatArray, expect, unit_rows
 from cagepose.model.hull import Hull, hull_of
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose, turn_from_z
-from cagepose.questions.contact_area import contact_area
+from cagepose.questions.contact_area import ContactArea, contact_area
 from cagepose.questions.outer_points import N_AROUND, is_round, lowest_points, outer_points
 from cagepose.questions.rolling import Rest, Rolling, rolling
 
@@ -26,6 +26,8 @@ LOW = 1e-3
 """Of the part's size. Points this much above the lowest one may be next to touch."""
 N_ZOOMS, MOST_TRIES = 6, 40
 """So often a place on something round is looked at again, ten times as near each time; and tries, at most."""
+N_ON_WAY = 9
+"""Places on the way from one down to a lower one that are looked at."""
 ROUNDING = 1e-12
 """Of the part's size. What is lower by no more is not lower."""
 BENT, OFF_ROW = 1e-3, 0.05
@@ -188,18 +190,36 @@ class _Outside:
     def _nearer(self, down: FloatArray) -> _Lowest:
         """Look for what is lowest about a down where something is round, ten times as near each time."""
         height_m, zoom, n_tries = float(self.heights(down[None])[0]), 0, 0
-        while self.is_round and zoom < N_ZOOMS and n_tries < MOST_TRIES:
+        if not self.is_round or self._lies_flat(down, height_m):
+            return _Lowest(down, height_m)
+        while zoom < N_ZOOMS and n_tries < MOST_TRIES:
             ways = np.linalg.svd(down[None])[2][1:]
             near = unit_rows(down + 2.0 * math.pi / N_AROUND / 10.0**zoom * RING @ ways)
             points = [lowest_points(shape, near) for shape in self._part.parts]
-            beside = hull_of(np.concatenate([*points, self._points[self._is_low(down)]]))
-            heights = np.where(beside.normals @ down > SAME_SIDE, self.heights(beside.normals), math.inf)
-            if heights.min(initial=math.inf) < height_m - ROUNDING * self._size_m:
-                down, height_m = beside.normals[np.argmin(heights)], float(heights.min())
+            beside = hull_of(np.concatenate([*points, self._points[self._is_low(down)]])).normals
+            beside = beside[beside @ down > SAME_SIDE]
+            heights = self.heights(beside)
+            if len(beside) and self._falls(down, beside[best := int(np.argmin(heights))]):
+                down, height_m = beside[best], float(heights[best])
             else:
                 zoom += 1
             n_tries += 1
         return _Lowest(down, height_m)
+
+    def _lies_flat(self, down: FloatArray, height_m: float) -> bool:
+        """Whether the part lies on a flat place of its own, not on one that stands for something round."""
+        own_m = float(((self._points - self._center) @ down).max())
+        return height_m - own_m <= SAME_HEIGHT * self._size_m and self._contact(down).is_flat
+
+    def _falls(self, down: FloatArray, other: FloatArray) -> bool:
+        """Whether the centre of gravity sinks all the way from one down to another."""
+        shares = np.linspace(0.0, 1.0, N_ON_WAY)[:, None]
+        heights = self.heights(unit_rows(down + shares * (other - down)))
+        rounding = ROUNDING * self._size_m
+        return bool((np.diff(heights) <= rounding).all() and heights[-1] < heights[0] - rounding)
+
+    def _contact(self, down: FloatArray) -> ContactArea:
+        return contact_area(self._part.parts, down, self._center, SAME_HEIGHT * self._size_m)
 
     def _is_low(self, down: FloatArray) -> NDArray[np.bool_]:
         depths = (self._points - self._center) @ down
@@ -207,7 +227,7 @@ class _Outside:
         return is_low
 
     def pose(self, at: _Lowest, rest: Rest, rise_m: float) -> RestingPose:
-        lies_on = contact_area(self._part.parts, at.down, self._center, SAME_HEIGHT * self._size_m)
+        lies_on = self._contact(at.down)
         names = [self._part.element_names[index] for index in lies_on.parts]
         return RestingPose(
             at.down,
