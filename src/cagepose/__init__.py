@@ -52,6 +52,9 @@ if TYPE_CHECKING:
     from cagepose.model.shapes import Sphere as Sphere
     from cagepose.model.spring import Spring as Spring
     from cagepose.model.tolerances import Tolerances as Tolerances
+    from cagepose.questions.cage_rests import CageRest as CageRest
+    from cagepose.questions.cage_rests import CageRests as CageRests
+    from cagepose.questions.cage_rests import cage_rests as cage_rests
     from cagepose.questions.friction import FrictionLimits as FrictionLimits
     from cagepose.questions.friction import friction_limits as friction_limits
     from cagepose.questions.jam import Jam as Jam
@@ -138,6 +141,7 @@ _HOMES = {
     "cagepose.model.shapes": ("Capsule", "Cone", "Convex", "Cylinder", "Disc", "Shape", "Sphere"),
     "cagepose.model.spring": ("Spring",),
     "cagepose.model.tolerances": ("Tolerances",),
+    "cagepose.questions.cage_rests": ("CageRest", "CageRests", "cage_rests"),
     "cagepose.questions.friction": ("FrictionLimits", "friction_limits"),
     "cagepose.questions.jam": ("Jam", "jam"),
     "cagepose.questions.no_motion": ("NoMotion",),
@@ -180,6 +184,8 @@ __all__ = [
     "Box",
     "Cage",
     "CageBody",
+    "CageRest",
+    "CageRests",
     "CageposeError",
     "Capsule",
     "Certificate",
@@ -253,6 +259,7 @@ __all__ = [
     "Variant",
     "Variation",
     "__version__",
+    "cage_rests",
     "certificate",
     "check_certificate",
     "compare",

@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.errors import Problem, SceneError
+from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, expect, unit_rows
 from cagepose.model.hull import Hull, hull_of
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose, turn_from_z
+from cagepose.model.scene import Scene
 from cagepose.questions.contact_area import ContactArea, contact_area
 from cagepose.questions.outer_points import N_AROUND, is_round, lowest_points, outer_points
 from cagepose.questions.rolling import Rest, Rolling, rolling
@@ -24,6 +26,8 @@ SAME_DOWN, SAME_SIDE = math.cos(0.01), math.cos(0.15)
 """Two downs with a greater cosine are one, or beside each other."""
 LOW = 1e-3
 """Of the part's size. Points this much above the lowest one may be next to touch."""
+LEVEL = 1e-12
+"""Of one. A cosine that falls short of it by no more is one."""
 N_ZOOMS, MOST_TRIES = 6, 40
 """So often a place on something round is looked at again, ten times as near each time; and tries, at most."""
 N_ON_WAY = 9
@@ -33,6 +37,18 @@ ROUNDING = 1e-12
 BENT, OFF_ROW = 1e-3, 0.05
 """Downs this near to a line or to a plane lie in it."""
 RING = np.concatenate([np.zeros((1, 2)), np.array([(math.cos(a), math.sin(a)) for a in np.arange(8) * math.pi / 4.0])])
+
+
+def is_on_floor_alone(scene: Scene) -> bool:
+    """Whether the cage is one box with a level face, which is as good as a plane, under the first phase's weight."""
+    cage, gravity = scene.cage, scene.loads[0].gravity_world
+    if len(cage.shapes) != 1 or len(cage.names) or cage.holes or cage.bodies or not scene.loads[0].is_weight_alone:
+        return False
+    (floor,) = cage.shapes
+    if not isinstance(floor, Box) or gravity is None:
+        return False
+    axes = (cage.pose_world_cage @ floor.pose_body_shape).rotation
+    return bool(np.abs(gravity @ axes).max() >= (1.0 - LEVEL) * np.linalg.norm(gravity))
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+
 from cagepose.files.words import LengthWords, names_of
 from cagepose.model.wording import components, number_of
 from cagepose.questions.resting import RestingPose, RestingPoses

@@ -1,4 +1,4 @@
-"""An oracle of rests on a plane: many parts at once roll down in small steps, each about its lowest corner."""
+"""Goldberg's estimate of how often a part ends on each face of its hull: an oracle of rests on a plane."""
 
 from __future__ import annotations
 
@@ -8,25 +8,6 @@ import numpy as np
 
 from cagepose.model.checks import FloatArray
 from cagepose.model.hull import Hull
-
-
-def spread_downs(n: int, random: np.random.Generator) -> FloatArray:
-    downs = random.normal(size=(n, 3))
-    return downs / np.linalg.norm(downs, axis=1, keepdims=True)
-
-
-def shares_of_faces(
-    hull: Hull, center: FloatArray, downs: FloatArray, step: float = 0.004, n_steps: int = 1500
-) -> FloatArray:
-    """Return the share of downs (n, 3) that come next to each face's normal."""
-    corners = hull.vertices_m - center
-    for _ in range(n_steps):
-        lowest = corners[np.argmax(downs @ corners.T, axis=1)]
-        rise = lowest - np.einsum("ij,ij->i", lowest, downs)[:, None] * downs
-        downs = downs - step * rise / np.maximum(np.linalg.norm(rise, axis=1, keepdims=True), 1e-12)
-        downs /= np.linalg.norm(downs, axis=1, keepdims=True)
-    nearest = np.argmax(downs @ hull.normals.T, axis=1)
-    return np.bincount(nearest, minlength=len(hull.normals)) / len(downs)
 
 
 def goldberg_shares(hull: Hull, center: FloatArray) -> FloatArray:

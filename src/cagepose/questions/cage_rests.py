@@ -1,0 +1,277 @@
+"""Where a part comes to rest in its cage when it is let go from many poses: `cage_rests`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cagepose.model.checks import FloatArray, expect, expect_choice, expect_count
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+from cagepose.questions.unanswered import Unanswered
+from cagepose.runs.cases import greatest_friction
+from cagepose.runs.many import run_many
+from cagepose.runs.methods import chosen_method
+from cagepose.runs.run import AT_REST
+from cagepose.runs.solve import run
+from cagepose.runs.variation import Variation
+from cagepose.studies.play import play
+from cagepose.studies.play_frame import FREEDOMS, N_LENGTHS
+
+N_STARTS = 200
+MOST_PROPOSED = 100
+"""Poses that are drawn for each start, at most: the part would be in the cage in others."""
+SEED = 20250101
+OPEN_WAY, OPEN_ANGLE = 0.25, math.pi / 4.0
+"""How far starts are from the scene's own where the cage sets no limit: of the scene's size, and radians."""
+SAME_POSE = 1e-3
+"""Ends that are this near are one: of the scene's size, and radians."""
+CONFIDENCE = 1.959963984540054
+"""Of 95 %, in standard deviations."""
+
+
+@dataclass(frozen=True, eq=False)
+class CageRest:
+    """Where some of the starts ended: at one pose, or with friction, which holds the object at many, at some contacts.
+
+    Attributes
+    ----------
+    verdict
+        "rests", "may rest", or how a run ends that does not come to rest: "escapes", "stalled", ...
+    stability
+        "stable", "marginal", "unstable" or "not shown", as in `cagepose.Proof`; None: not at rest.
+    pose
+        The object's in the world at one of the ends.
+    touching
+        Names of the cage's points and shapes that touch at that end.
+    undetermined
+        Freedoms of the cage's frame along which the load does not tell poses apart: ends that differ in them are one.
+    n
+        How many starts ended here.
+    low, high
+        Between which the likelihood lies, with 95 % confidence (Wilson 1927).
+    """
+
+    verdict: str
+    stability: str | None
+    pose: Pose
+    touching: tuple[str, ...]
+    undetermined: tuple[str, ...]
+    n: int
+    low: float
+    high: float
+
+    def __repr__(self) -> str:
+        return f"<CageRest: {self.verdict}, {self.n} starts>"
+
+
+@dataclass(frozen=True, eq=False)
+class CageRests:
+    """What was found from starts that are drawn: there may be rests that none of them led to.
+
+    Attributes
+    ----------
+    phase
+        Whose load acts, alone.
+    rests
+        Those with most starts first.
+    start_position_m, start_quaternion_wxyz
+        The object's poses in the world from which it was let go, (n, 3) and (n, 4).
+    ends_in
+        Which of the rests each start led to, from 0.
+    n_proposed
+        Poses that were drawn, among them those at which it would be in the cage.
+    has_friction
+        Whether there is any.
+    not_limited
+        Freedoms in which the play has no end, so that starts lie about the scene's own.
+    """
+
+    phase: str
+    rests: tuple[CageRest, ...]
+    start_position_m: FloatArray
+    start_quaternion_wxyz: FloatArray
+    ends_in: tuple[int, ...]
+    n_proposed: int
+    has_friction: bool
+    not_limited: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return f"<{len(self.rests)} CageRests of {len(self.ends_in)} starts>"
+
+
+def cage_rests(
+    scene: Scene,
+    phase: str | None = None,
+    *,
+    n_starts: int = N_STARTS,
+    progress: Callable[[float], None] | None = None,
+) -> CageRests | Unanswered:
+    """Let the object go from many poses in its cage under the load of one phase, and gather where it ends.
+
+    Starts are drawn about the scene's own start pose, over the ranges of its play in each freedom, denser about the
+    middle; poses at which the object would be in the cage are left out. The same starts are drawn each time.
+
+    Parameters
+    ----------
+    phase
+        Its name; None: the first.
+    n_starts
+        How many.
+    progress
+        Called with the share of the starts that were followed.
+
+    Raises
+    ------
+    SceneError
+        There is no such phase, or no count of starts.
+    """
+    expect(scene, Scene, "scene")
+    expect_count(n_starts, "n_starts")
+    names = [load.name for load in scene.loads]
+    if phase is not None:
+        expect_choice(phase, names, "phase")
+    load = scene.loads[0 if phase is None else names.index(phase)]
+    if load.drive or load.press:
+        return Unanswered(f"{load.name} drives or presses, so that the cage is not the same at the end")
+    alone = scene.but_for(loads=[load])
+    found = play(alone, search_s=0.0).freedoms
+    limits = [(found[name].low.reached, found[name].high.reached) for name in FREEDOMS]
+    opens = [OPEN_WAY * scene.size_m] * N_LENGTHS + [OPEN_ANGLE] * (len(FREEDOMS) - N_LENGTHS)
+    lows = np.array([-far if low is None else max(low, -far) for (low, _), far in zip(limits, opens, strict=True)])
+    highs = np.array([far if high is None else min(high, far) for (_, high), far in zip(limits, opens, strict=True)])
+    drops = _Drops(alone, lows, highs)
+    while drops.n_valid < n_starts and drops.n_proposed < MOST_PROPOSED * n_starts:
+        drops.drop(n_starts)
+        if progress is not None:
+            progress(min(drops.n_valid / n_starts, 1.0))
+    if drops.n_valid == 0:
+        return Unanswered(f"no pose in the cage was found beside the start, of {drops.n_proposed} that were drawn")
+    return drops.gathered(load.name, n_starts, _not_limited(limits))
+
+
+def _not_limited(limits: list[tuple[float | None, float | None]]) -> tuple[str, ...]:
+    return tuple(name for name, ends in zip(FREEDOMS, limits, strict=True) if None in ends)
+
+
+class _Drops:
+    """Starts, and where they ended."""
+
+    def __init__(self, scene: Scene, lows: FloatArray, highs: FloatArray) -> None:
+        self._scene, self._lows, self._highs = scene, lows, highs
+        self._has_friction = greatest_friction(scene, chosen_method(scene, None).friction(scene)) > 0.0
+        self._random = np.random.default_rng(SEED)
+        self._starts, self._ends = list[FloatArray](), list[FloatArray]()
+        self._verdicts, self._touching = list[str](), list[NDArray[np.bool_]]()
+        self.n_proposed = 0
+
+    @property
+    def n_valid(self) -> int:
+        return len(self._verdicts)
+
+    def drop(self, n: int) -> None:
+        """Draw poses and let the object go from those that are free."""
+        shares = self._random.random((n, len(FREEDOMS))) * np.cbrt(self._random.random((n, 1)))
+        sides = np.where(self._random.random((n, len(FREEDOMS))) < 0.5, self._lows, self._highs)
+        values = shares * sides
+        poses = [self._pose(row) for row in values]
+        ended = run_many(
+            self._scene,
+            Variation(
+                object_position_m=np.array([pose.position_m for pose in poses]),
+                object_euler_zyx=np.array([pose.euler_zyx for pose in poses]),
+            ),
+        )
+        self.n_proposed += n
+        is_free = ended.verdict != "invalid"
+        for row in np.flatnonzero(is_free).tolist():
+            self._starts.append(np.concatenate([poses[row].position_m, poses[row].quaternion_wxyz]))
+            self._ends.append(np.concatenate([ended.position_m[row, 0], ended.quaternion_wxyz[row, 0]]))
+            self._verdicts.append(str(ended.verdict[row]))
+            self._touching.append(ended.touching[row, 0])
+
+    def _pose(self, values: FloatArray) -> Pose:
+        """Return the object's pose in the world after displacements and angles from the start in the cage's axes."""
+        cage, start = self._scene.cage.pose_world_cage, self._scene.object.pose_world_object
+        axes = Pose(quaternion_wxyz=cage.quaternion_wxyz)
+        turn = Pose(euler_zyx=values[:2:-1])
+        turned = axes @ turn @ axes.inverse() @ Pose(quaternion_wxyz=start.quaternion_wxyz)
+        return Pose(start.position_m + axes.transform(values[:N_LENGTHS]), turned.quaternion_wxyz)
+
+    def gathered(self, phase: str, n_starts: int, not_limited: tuple[str, ...]) -> CageRests:
+        n = min(self.n_valid, n_starts)
+        values = self._values(np.array(self._ends[:n]))
+        verdicts, touching = np.array(self._verdicts[:n]), np.array(self._touching[:n])
+        left, found = np.arange(n), list[tuple[_End, NDArray[np.int64]]]()
+        while len(left):
+            first = int(left[0])
+            end = self._end(first)
+            alike = verdicts[left] == verdicts[first]
+            if end.stability is not None and self._has_friction:
+                alike &= (touching[left] == touching[first]).all(axis=1)
+            elif end.stability is not None:
+                determined = [name not in end.undetermined for name in FREEDOMS]
+                apart = np.abs(values[left] - values[first])
+                apart[:, N_LENGTHS:] = np.minimum(apart[:, N_LENGTHS:], 2.0 * math.pi - apart[:, N_LENGTHS:])
+                apart[:, :N_LENGTHS] /= self._scene.size_m
+                alike &= (apart[:, determined] <= SAME_POSE).all(axis=1)
+            found.append((end, left[alike]))
+            left = left[~alike]
+        found.sort(key=lambda one: -len(one[1]))
+        ends_in = np.zeros(n, dtype=np.int64)
+        for number, (_, rows) in enumerate(found):
+            ends_in[rows] = number
+        rests = tuple(CageRest(*end, len(rows), *wilson(len(rows), n)) for end, rows in found)
+        starts = np.array(self._starts[:n])
+        return CageRests(
+            phase,
+            rests,
+            starts[:, :3],
+            starts[:, 3:],
+            tuple(ends_in.tolist()),
+            self.n_proposed,
+            self._has_friction,
+            not_limited,
+        )
+
+    def _end(self, row: int) -> _End:
+        """Follow one start again, and tell how it ends."""
+        start = Pose(self._starts[row][:3], self._starts[row][3:])
+        ended = run(self._scene.but_for(object=self._scene.object.starting_at(start))).phases[0]
+        is_at_rest = ended.verdict in AT_REST
+        touching = tuple(dict.fromkeys(contact.point for contact in ended.contacts)) if is_at_rest else ()
+        stability, undetermined = (ended.proof.stability, ended.proof.undetermined) if is_at_rest else (None, ())
+        return _End(ended.verdict, stability, ended.pose, touching, undetermined)
+
+    def _values(self, ends: FloatArray) -> FloatArray:
+        """Return displacements and angles from the start in the cage's axes, (n, 6), of poses (n, 7) in the world."""
+        start = self._scene.object.pose_world_object
+        axes = Pose(quaternion_wxyz=self._scene.cage.pose_world_cage.quaternion_wxyz)
+        back = Pose(quaternion_wxyz=start.quaternion_wxyz).inverse() @ axes
+        turns = [(axes.inverse() @ Pose(quaternion_wxyz=end[3:]) @ back).euler_zyx[::-1] for end in ends]
+        return np.concatenate([axes.inverse_transform(ends[:, :3] - start.position_m), np.array(turns)], axis=1)
+
+
+class _End(NamedTuple):
+    verdict: str
+    stability: str | None
+    pose: Pose
+    touching: tuple[str, ...]
+    undetermined: tuple[str, ...]
+
+
+def wilson(n_in: int, n: int) -> tuple[float, float]:
+    """Return the interval in which a likelihood lies, with 95 % confidence, of which ``n_in`` of ``n`` came true.
+
+    >>> [round(limit, 4) for limit in wilson(0, 100)]
+    [0.0, 0.037]
+    """
+    share, square = n_in / n, CONFIDENCE**2 / n
+    middle = (share + square / 2.0) / (1.0 + square)
+    half = math.sqrt(share * (1.0 - share) * square + square**2 / 4.0) / (1.0 + square)
+    return max(middle - half, 0.0), min(middle + half, 1.0)
