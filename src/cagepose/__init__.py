@@ -55,6 +55,8 @@ if TYPE_CHECKING:
     from cagepose.questions.cage_rests import CageRest as CageRest
     from cagepose.questions.cage_rests import CageRests as CageRests
     from cagepose.questions.cage_rests import cage_rests as cage_rests
+    from cagepose.questions.escape import EscapeEnergy as EscapeEnergy
+    from cagepose.questions.escape import escape_energy as escape_energy
     from cagepose.questions.friction import FrictionLimits as FrictionLimits
     from cagepose.questions.friction import friction_limits as friction_limits
     from cagepose.questions.jam import Jam as Jam
@@ -142,6 +144,7 @@ _HOMES = {
     "cagepose.model.spring": ("Spring",),
     "cagepose.model.tolerances": ("Tolerances",),
     "cagepose.questions.cage_rests": ("CageRest", "CageRests", "cage_rests"),
+    "cagepose.questions.escape": ("EscapeEnergy", "escape_energy"),
     "cagepose.questions.friction": ("FrictionLimits", "friction_limits"),
     "cagepose.questions.jam": ("Jam", "jam"),
     "cagepose.questions.no_motion": ("NoMotion",),
@@ -208,6 +211,7 @@ __all__ = [
     "DriveProof",
     "DrivenPlace",
     "Facets",
+    "EscapeEnergy",
     "Event",
     "Force",
     "Frame",
@@ -263,6 +267,7 @@ __all__ = [
     "certificate",
     "check_certificate",
     "compare",
+    "escape_energy",
     "friction_limits",
     "insertion",
     "jam",

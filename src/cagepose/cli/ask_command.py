@@ -21,6 +21,10 @@ QUESTIONS = {
         "cagepose.cli.ask_resting:ask_resting",
         "In which poses a part comes to rest, how firmly, and how often it ends in each.",
     ),
+    "escape": (
+        "cagepose.cli.ask_escape:ask_escape",
+        "At most how much work against its load gets a part out of its cage, and by which way.",
+    ),
 }
 """Where the command of each question is, and what it asks."""
 

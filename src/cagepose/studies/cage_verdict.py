@@ -170,12 +170,16 @@ def search_way_out(
 def _path(frame: PlayFrame, stations: Rows[Station], last: int) -> tuple[PathStep, ...]:
     steps = []
     while stations[last].parent >= 0:
-        station = stations[last]
-        along = frame.vector_to_world(station.along)
-        if station.angle > 0.0:
-            motion = Motion("turn", None, along, frame.point_to_world(station.through), 0.0, float(station.angle))
-        else:
-            motion = Motion("travel", along, None, None, frame.length_m * float(station.distance), 0.0)
-        steps.append(PathStep(motion, frame.pose_after(station.position, station.quaternion)))
-        last = int(station.parent)
+        steps.append(step_to(frame, stations[last]))
+        last = int(stations[last].parent)
     return tuple(reversed(steps))
+
+
+def step_to(frame: PlayFrame, station: Station) -> PathStep:
+    """Return the motion that leads to a station of a search, and the object's pose there."""
+    along = frame.vector_to_world(station.along)
+    if station.angle > 0.0:
+        motion = Motion("turn", None, along, frame.point_to_world(station.through), 0.0, float(station.angle))
+    else:
+        motion = Motion("travel", along, None, None, frame.length_m * float(station.distance), 0.0)
+    return PathStep(motion, frame.pose_after(station.position, station.quaternion))

@@ -1,0 +1,33 @@
+"""``cagepose ask escape``: how much work gets a part out of its cage."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from cagepose.cli.asked import JsonOption, PhaseOption, run_asked
+from cagepose.cli.options import SceneArgument, SetOption
+
+
+def ask_escape(
+    scene: SceneArgument,
+    /,
+    *,
+    phase: PhaseOption = None,
+    motions: Annotated[
+        int, Parameter(help="How many motions the search for a way out that takes less work tries.")
+    ] = 20_000,
+    set_values: SetOption = (),
+    json: JsonOption = False,
+) -> int:
+    """Print at most how much work against the load gets the part out from where it rests, and the way."""
+    asked = run_asked(scene, set_values)
+    if asked is None:
+        return 2
+    from cagepose.files.answers import escape as answers
+    from cagepose.files.progress import tell
+    from cagepose.questions.escape import escape_energy
+
+    tell(f"searching for ways out that take little work ({motions} motions)")
+    return asked.tell(lambda run: escape_energy(run, phase, n_motions=motions), answers, json)

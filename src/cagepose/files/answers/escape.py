@@ -1,0 +1,28 @@
+"""`EscapeEnergy` as lines."""
+
+from __future__ import annotations
+
+import math
+
+from cagepose.files.words import LengthWords, line_of
+from cagepose.questions.escape import EscapeEnergy
+
+
+def lines(answer: EscapeEnergy, words: LengthWords) -> list[tuple[str, str]]:
+    """Return names and texts."""
+    told = [("at the end of", answer.phase)]
+    if math.isinf(answer.at_least_j):
+        return [*told, ("energy", "no work gets it out: it is proven to be caged")]
+    tried = ("tried", f"{answer.n_tried} motions")
+    if math.isinf(answer.at_most_j):
+        return [*told, ("energy", "not known: no way out was found, and no proof that there is none"), tried]
+    unit = f"N {words.unit}" if answer.in_newtons else f"{words.unit} times the load"
+    energy = f"at most {words.scaled(answer.at_most_j, 0.0)} {unit}, by a way that was found; no lower bound is known"
+    steps = [
+        ("way out" if number == 0 else "", f"{step.motion.kind} {line_of(step.motion)} {words.amount(step.motion)}")
+        for number, step in enumerate(answer.path)
+    ]
+    assert answer.top is not None  # there is a path
+    angles = ", ".join(f"{math.degrees(angle):.4g}" for angle in answer.top.euler_zyx)
+    top = f"at ({words.lengths(answer.top.position_m)}) {words.unit}, yaw pitch roll ({angles}) deg"
+    return [*told, ("energy", energy), ("highest", top), *steps, tried]

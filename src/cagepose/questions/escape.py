@@ -1,0 +1,278 @@
+"""How much work it takes to get a part out of its cage against its load: `escape_energy`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cagepose.kernels.algebra.pose import moved_pose
+from cagepose.kernels.algebra.record import Rows, empty_rows
+from cagepose.kernels.algebra.tolerances import kernel_tolerances
+from cagepose.kernels.algebra.vector import vector_from
+from cagepose.kernels.collision.boxes import empty_placed_boxes
+from cagepose.kernels.play.escape import LENGTH_OF_WAY_OUT, N_RANDOM, Station, grow_tree
+from cagepose.model.checks import FloatArray, expect, expect_count
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+from cagepose.questions.ends import phase_asked
+from cagepose.questions.unanswered import Unanswered
+from cagepose.runs.load_scaling import scaled_load
+from cagepose.runs.run import AT_REST, Motion, Run
+from cagepose.studies.cage_verdict import PathStep, step_to
+from cagepose.studies.play import play
+from cagepose.studies.play_frame import PlayFrame
+
+N_MOTIONS = 20_000
+MOST_STATIONS = 20_000
+MOTIONS_OF_BATCH = 100
+RANDOM_SEED = 20250101
+LEVEL = 1e-9
+"""Of the load. A way out against which no more of it acts goes level."""
+LOWER = 1e-3
+"""Of the work. A way out must be better by this much."""
+
+
+@dataclass(frozen=True, eq=False)
+class EscapeEnergy:
+    """The least work that a way out takes.
+
+    Attributes
+    ----------
+    phase
+        At whose end the part is, and whose load acts.
+    at_least_j
+        No way out takes less, joules; metres times the load where that has no newtons. Infinite: it is proven that
+        there is no way out. Zero: no more is known.
+    at_most_j
+        The path takes this much. Infinite: none was found.
+    in_newtons
+        Whether the load is in newtons.
+    path
+        The way out that was found, free of contact; empty: none.
+    top
+        The object's pose in the world where the load has least work done, on that path; None: there is none.
+    n_ways
+        So many ways out were found, each better than the one before.
+    n_tried
+        Motions that the search tried.
+    """
+
+    phase: str
+    at_least_j: float
+    at_most_j: float
+    in_newtons: bool
+    path: tuple[PathStep, ...]
+    top: Pose | None
+    n_ways: int
+    n_tried: int
+
+    def __repr__(self) -> str:
+        return f"<EscapeEnergy: {self.at_least_j:.6g} to {self.at_most_j:.6g} J>"
+
+
+def escape_energy(
+    run: Run, phase: str | None = None, *, n_motions: int = N_MOTIONS, progress: Callable[[float], None] | None = None
+) -> EscapeEnergy | Unanswered:
+    """Return how much work it takes to get the object out from where a phase left it, against the phase's load.
+
+    A tree of motions free of contact is grown from there; as soon as it leads out, everything as high as that way is
+    cut off, and the search goes on below. So the answer is at most what the best way takes, and a longer search finds
+    better ones. Friction does not count. That there is no way out at all is a proof (`cagepose.play`).
+
+    Parameters
+    ----------
+    phase
+        Its name; None: the last.
+    n_motions
+        How many the search tries, unless it finds a way that takes no work; the same ones each time.
+    progress
+        Called with the share of them that were tried.
+
+    Raises
+    ------
+    SceneError
+        The run has no such phase, or no count of motions.
+    """
+    expect(run, Run, "run")
+    expect_count(n_motions, "n_motions")
+    number = phase_asked(run, phase)
+    ended, scene, load = run.phases[number], run.scene, run.scene.loads[number]
+    if ended.verdict not in AT_REST:
+        return Unanswered(f"nothing is at rest at the end of {ended.name}: it ends as {ended.verdict!r}")
+    if load.moments or load.springs or load.drive or load.press or not all(push.has_potential for push in load.pushes):
+        return Unanswered(f"{load.name} is more than weight and forces that keep their direction, so it has no energy")
+    weighed = scaled_load(scene, load)
+    if play(scene, search_s=0.0).verdict == "caged":
+        return EscapeEnergy(load.name, math.inf, math.inf, weighed.in_newtons, (), None, 0, 0)
+    if scene.has_other_shapes:
+        return Unanswered(
+            "a way out is searched for boxes among points alone, and no proof was found that there is none"
+        )
+    points = [scene.object.center_of_gravity_m, *(push.at_object(ended.pose) for push in load.pushes)]
+    work = _Work(np.array([weighed.gravity, *weighed.forces]).reshape(-1, 3), np.array(points))
+    search = _Search(scene.but_for(object=scene.object.starting_at(ended.pose)), work)
+    search.go_on(n_motions, progress)
+    return EscapeEnergy(
+        load.name, 0.0, search.least_j, weighed.in_newtons, search.path, search.top, search.n_ways, search.n_tried
+    )
+
+
+@dataclass(frozen=True)
+class _Work:
+    """Forces (n, 3) in the world, newtons, at points (n, 3) of the object, metres."""
+
+    forces: FloatArray
+    points: FloatArray
+
+    def potential(self, pose: Pose) -> float:
+        return -float((self.forces * pose.transform(self.points)).sum())
+
+    def highest(self, before: Pose, motion: Motion) -> tuple[float, float]:
+        """Return the greatest potential during a motion from a pose, and the share of the motion at which it is."""
+        places = before.transform(self.points)
+        here = -float((self.forces * places).sum())
+        if motion.direction_world is not None:
+            rise = -motion.distance_m * float(self.forces.sum(axis=0) @ motion.direction_world)
+            return (here + rise, 1.0) if rise > 0.0 else (here, 0.0)
+        assert motion.axis_world is not None
+        assert motion.through_world is not None
+        # Of a turn by an angle a, the potential is here + even (1 - cos a) - odd sin a.
+        arms = places - motion.through_world
+        across = np.cross(motion.axis_world, arms)
+        odd = float((self.forces * across).sum())
+        even = -float((self.forces * np.cross(motion.axis_world, across)).sum())
+        angles = [0.0, motion.angle_rad]
+        extreme = math.atan2(odd, even) % math.pi
+        angles += [angle for angle in (extreme, extreme + math.pi) if angle < motion.angle_rad]
+        values = [here + even * (1.0 - math.cos(angle)) - odd * math.sin(angle) for angle in angles]
+        best = int(np.argmax(values))
+        return values[best], angles[best] / motion.angle_rad
+
+
+class _Search:
+    """A tree of motions free of contact that stays below the best way out so far.
+
+    Attributes
+    ----------
+    least_j
+        What the best way takes; infinite: none was found.
+    path, top
+        It, and the pose on it where the potential is greatest.
+    n_ways, n_tried
+        Ways out, and motions that were tried.
+    """
+
+    def __init__(self, scene: Scene, work: _Work) -> None:
+        self._frame, self._work = PlayFrame(scene), work
+        self._tolerances = kernel_tolerances(scene.size_m / self._frame.length_m, scene.tolerances.touch)
+        self._placement = empty_placed_boxes(self._frame.geometry)
+        self._random = np.random.default_rng(RANDOM_SEED)
+        self._stations: Rows[Station] = empty_rows(Station, MOST_STATIONS)
+        self._stations[0].parent = -1
+        self._stations[0].quaternion[0] = 1.0
+        start = scene.object.pose_world_object
+        self._poses, self._tops = [start], [start]
+        self._peaks = [work.potential(start)]
+        self._level = float(np.linalg.norm(work.forces, axis=1).sum()) * LEVEL
+        self._force = work.forces.sum(axis=0)
+        self.least_j, self.path = math.inf, tuple[PathStep, ...]()
+        self.top: Pose | None = None
+        self.n_ways = self.n_tried = 0
+
+    def go_on(self, n_motions: int, progress: Callable[[float], None] | None) -> None:
+        while self.n_tried < n_motions and self.least_j > self._level * self._frame.length_m:
+            if progress is not None:
+                progress(self.n_tried / n_motions)
+            if len(self._peaks) + MOTIONS_OF_BATCH > MOST_STATIONS:
+                self._keep([0])
+            self._grow()
+
+    def _grow(self) -> None:
+        """Try some motions, and keep those that stay below the best way out."""
+        before = len(self._peaks)
+        samples = self._random.random((MOTIONS_OF_BATCH, N_RANDOM))
+        n_stations, is_out = grow_tree(
+            self._frame.geometry, samples, self._stations, before, self._placement, self._tolerances
+        )
+        self.n_tried += MOTIONS_OF_BATCH
+        for index in range(before, n_stations):
+            self._judge(index, is_out and index == n_stations - 1)
+        kept = [index for index, peak in enumerate(self._peaks) if self._is_low(peak)]
+        if len(kept) < len(self._peaks):
+            self._keep(kept)
+
+    def _judge(self, index: int, is_way: bool) -> None:
+        """Add a station that the tree has grown, with the greatest potential on the way to it."""
+        step, parent = step_to(self._frame, self._stations[index]), int(self._stations[index].parent)
+        before = self._poses[parent]
+        if is_way and step.motion.direction_world is not None:
+            if float(self._force @ step.motion.direction_world) >= -self._level:
+                if self._is_low(self._peaks[parent]):
+                    self._found(parent, step)
+                self._add(step.pose_world_object, math.inf, step.pose_world_object)
+                return
+            step = self._shortened(index, step, before)  # a way up: out of the cage only from farther along it
+        highest, share = self._work.highest(before, step.motion)
+        if highest > self._peaks[parent]:
+            self._add(step.pose_world_object, highest, step.motion.pose_at(before, share))
+        else:
+            self._add(step.pose_world_object, self._peaks[parent], self._tops[parent])
+
+    def _shortened(self, index: int, step: PathStep, before: Pose) -> PathStep:
+        """End a travel up without end at a random place that is lower than the best way out."""
+        assert step.motion.direction_world is not None
+        station, share = self._stations[index], float(self._random.random())
+        height_m = step.motion.distance_m
+        if math.isfinite(self.least_j):
+            left_j = self.least_j - (self._work.potential(before) - self._peaks[0])
+            height_m = min(height_m, -left_j / float(self._force @ step.motion.direction_world))
+        share *= height_m / step.motion.distance_m
+        station.distance = share * LENGTH_OF_WAY_OUT
+        parent = self._stations[int(station.parent)]
+        q = parent.quaternion
+        position, _ = moved_pose(
+            vector_from(parent.position),
+            (q[0], q[1], q[2], q[3]),
+            vector_from(station.along),
+            (0.0, 0.0, 0.0),
+            station.distance,
+            0.0,
+        )
+        for k in range(3):
+            station.position[k] = position[k]
+        motion = replace(step.motion, distance_m=share * step.motion.distance_m)
+        return PathStep(motion, motion.pose_at(before, 1.0))
+
+    def _add(self, pose: Pose, peak: float, top: Pose) -> None:
+        self._poses.append(pose)
+        self._peaks.append(peak)
+        self._tops.append(top)
+
+    def _is_low(self, peak: float) -> bool:
+        rise = peak - self._peaks[0]
+        return rise < (1.0 - LOWER) * self.least_j or rise == 0.0
+
+    def _found(self, parent: int, last: PathStep) -> None:
+        self.least_j, self.top = self._peaks[parent] - self._peaks[0], self._tops[parent]
+        steps = [last]
+        while parent > 0:
+            steps.append(step_to(self._frame, self._stations[parent]))
+            parent = int(self._stations[parent].parent)
+        self.path = tuple(reversed(steps))
+        self.n_ways += 1
+
+    def _keep(self, kept: list[int]) -> None:
+        """Leave out all other stations; those that stand on one of them go, too."""
+        number, stations = {-1: -1}, np.asarray(self._stations)
+        for index in kept:
+            if int(stations["parent"][index]) in number:
+                number[index] = len(number) - 1
+        whole = [index for index in number if index >= 0]
+        stations[: len(whole)] = stations[whole]
+        stations["parent"][: len(whole)] = [number[int(parent)] for parent in stations["parent"][: len(whole)]]
+        self._poses = [self._poses[index] for index in whole]
+        self._peaks = [self._peaks[index] for index in whole]
+        self._tops = [self._tops[index] for index in whole]
