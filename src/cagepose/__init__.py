@@ -59,6 +59,8 @@ if TYPE_CHECKING:
     from cagepose.questions.escape import escape_energy as escape_energy
     from cagepose.questions.friction import FrictionLimits as FrictionLimits
     from cagepose.questions.friction import friction_limits as friction_limits
+    from cagepose.questions.gap import CriticalGap as CriticalGap
+    from cagepose.questions.gap import critical_gap as critical_gap
     from cagepose.questions.jam import Jam as Jam
     from cagepose.questions.jam import jam as jam
     from cagepose.questions.no_motion import NoMotion as NoMotion
@@ -147,6 +149,7 @@ _HOMES = {
     "cagepose.questions.escape": ("EscapeEnergy", "escape_energy"),
     "cagepose.questions.friction": ("FrictionLimits", "friction_limits"),
     "cagepose.questions.jam": ("Jam", "jam"),
+    "cagepose.questions.gap": ("CriticalGap", "critical_gap"),
     "cagepose.questions.no_motion": ("NoMotion",),
     "cagepose.questions.tipping": ("LiftOff", "Loss", "Tipping", "tipping"),
     "cagepose.questions.resting": ("RestingPose", "RestingPoses", "resting_poses"),
@@ -202,6 +205,7 @@ __all__ = [
     "ContactFace",
     "ContactMargin",
     "Convex",
+    "CriticalGap",
     "Cylinder",
     "Design",
     "DesignResults",
@@ -267,6 +271,7 @@ __all__ = [
     "certificate",
     "check_certificate",
     "compare",
+    "critical_gap",
     "escape_energy",
     "friction_limits",
     "insertion",

@@ -23,7 +23,7 @@ StopChoice Study StudyFolderError StudyResults Tolerances Variant __version__
 Variation with_critical_friction
 FrictionLimits friction_limits Jam jam LiftOff Loss NoMotion Tipping tipping Unanswered
 RestingPose RestingPoses resting_poses
-CageRest CageRests cage_rests EscapeEnergy escape_energy
+CageRest CageRests cage_rests EscapeEnergy escape_energy CriticalGap critical_gap
 """
 
 

@@ -25,6 +25,10 @@ QUESTIONS = {
         "cagepose.cli.ask_escape:ask_escape",
         "At most how much work against its load gets a part out of its cage, and by which way.",
     ),
+    "gap": (
+        "cagepose.cli.ask_gap:ask_gap",
+        "Up to which value of a number of the scene the cage holds the part, and from which it gets out.",
+    ),
 }
 """Where the command of each question is, and what it asks."""
 
