@@ -7,11 +7,11 @@ import math
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, norm
 from cagepose.kernels.boundary.geometry import place_object
-from cagepose.kernels.contact.metric import frame_at, twist_of
+from cagepose.kernels.contact.metric import frame_at, twist_between, twist_of
 from cagepose.kernels.contact.on_circle import is_kept
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import edge_crossing
-from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, first_contact
+from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist, first_contact
 from cagepose.kernels.quasistatic.guards import (
     BEGINS_TO_TIP,
     CONTACT_ENDS,
@@ -34,8 +34,6 @@ SLANTED, NEAR_END = 8.0, 0.01
 """Times what contacts stray, that an event may be off along the way; and, in touch tolerances, how near to it the end
 of a contact is looked for.
 """
-LATE = 4.0
-"""In what an event may be off along the way. What is reached later is not what comes first."""
 CLOSER = 0.1
 """Of two numbers one after the other. Where the second one is less than so much of the first, a straight line through
 both is followed.
@@ -131,9 +129,7 @@ def first_past(
 
 @kernel
 def hit_on_path(setting: Setting, path: Path, hit: Hit, spread: float, work: QuasistaticWorkspace) -> Hit:
-    """Return what is hit, after the amount of the path where it is reached; or as it was, where it is not or was. Where
-    it is reached much later, something else may come first: the path goes to where it seemed to be hit, and is asked
-    again.
+    """Return what is hit, after the amount of the path where it is reached; or as it was, where it is not or was.
 
     A gap that is closed by the projection afterwards would turn an object aside that reaches two things at once.
     """
@@ -142,11 +138,31 @@ def hit_on_path(setting: Setting, path: Path, hit: Hit, spread: float, work: Qua
         return hit
     guard, enough = Guard(GAP_CLOSES, hit, -1, 0.0), (ON_FACE * setting.size_m, 0.0)
     amount = first_past(setting, path, guard, begun, hit.amount, spread, enough, work)
-    if amount == math.inf:
-        return hit
-    if amount > hit.amount + LATE * spread:
-        return Hit(hit.amount, -1, -1, 0.0)
-    return Hit(amount, hit.feature, hit.cage_feature, hit.angle)
+    return hit if amount == math.inf else Hit(amount, hit.feature, hit.cage_feature, hit.angle)
+
+
+@kernel
+def passed_before(
+    setting: Setting,
+    path: Path,
+    amount: float,
+    end: Vector,
+    turned: Quaternion,
+    reach_m: float,
+    work: QuasistaticWorkspace,
+) -> Hit:
+    """Return what a step goes through before its end, after an amount of the path; `NO_HIT`: nothing.
+
+    Along the path things are reached in another order than along its screw. The screw from the step's start to its very
+    end meets all that is passed. The placement is that of the start.
+    """
+    place_object(setting.geometry, path.position, path.quaternion, work.placement)
+    velocity, spin = twist_between(path.position, path.quaternion, end, turned)
+    screw, at = Twist(velocity, spin, 1.0), (path.position, path.quaternion)
+    met = first_contact(setting, work.placement, work.contacts, at[0], at[1], screw, reach_m)
+    if met.feature < 0 or gap_of(setting, met, end, turned, work) >= -setting.tolerances.touch_m:
+        return NO_HIT
+    return Hit(met.amount * amount, met.feature, met.cage_feature, met.angle)
 
 
 @kernel
@@ -210,11 +226,21 @@ def furthest_step(setting: Setting, path: Path, work: QuasistaticWorkspace) -> t
         return amount, True, path.position, path.quaternion
     if amount < hit.amount:
         hit = NO_HIT
-    for halving in range(HALVINGS):
+    as_planned = True
+    for _ in range(HALVINGS):
         done, end, turned = step_to(setting, path, amount, hit, work)
-        if done:
-            return amount, halving == 0, end, turned
-        amount, hit = 0.5 * amount, NO_HIT
+        passed = NO_HIT
+        if done and is_curved and amount < twist.end:
+            passed = passed_before(setting, path, amount, end, turned, reach_m, work)
+        if passed.feature >= 0:
+            hit = hit_on_path(setting, path, passed, spread, work)
+        if done and not hit.amount < amount:
+            place_object(setting.geometry, end, turned, placement)
+            return amount, as_planned, end, turned
+        if passed.feature >= 0:
+            amount = hit.amount
+        else:
+            amount, hit, as_planned = 0.5 * amount, NO_HIT, False
     return 0.0, False, path.position, path.quaternion
 
 
