@@ -19,6 +19,7 @@ from cagepose.kernels.outcome.endings import INVALID, NOT_RUN
 from cagepose.kernels.outcome.trace import RESTS, VERDICT_NAMES
 from cagepose.kernels.stability.proof import OTHER_ONSET, TOO_MANY_CHOICES, UNIQUENESS_NOT_SHOWN
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, expect_count, finite_array
+from cagepose.model.methods import DEFAULT_METHOD
 from cagepose.model.pose import placed
 from cagepose.model.scene import Scene
 from cagepose.runs.batch import Batch
@@ -198,7 +199,7 @@ def run_many(
 
 def runs_of_rows(scene: Scene, rows: SceneRows) -> Runs:
     """Return the results of runs of scenes that differ from one in numbers, which are done."""
-    return _columns([scene], [chosen_method(scene).name], [rows], float(rows.solve_s.sum()))
+    return _columns([scene], [scene.method or DEFAULT_METHOD], [rows], float(rows.solve_s.sum()))
 
 
 def _run_all(batches: Sequence[Batch], n_threads: int, progress: Callable[[float], None] | None) -> None:

@@ -32,11 +32,10 @@ class SceneRows:
     """
 
     def __init__(self, scene: Scene, n_runs: int) -> None:
-        self._scene, self._method, self.n_runs = scene, chosen_method(scene), n_runs
+        self._scene, self.n_runs = scene, n_runs
         self.endings = empty_endings(n_runs, len(scene.loads), len(scene.cage.element_names))
         self.solve_s: FloatArray = np.zeros(n_runs)
         self._slots, self._frictions = Slots(self.endings), np.zeros(n_runs)
-        self._rules = self._method.rules(scene)
         self._work: tuple[tuple[object, ...], Slots] | None = None
 
     def run(self, row: int, scene: Scene) -> None:
@@ -51,11 +50,12 @@ class SceneRows:
         friction = method.friction(scene)
         part, cases = taken_apart(scene, friction)
         sizes = run_sizes(scene, cast(Cases, cases.value))
+        rules = method.rules(scene)
         if self._work is None or self._work[0] != sizes:
-            self._work = sizes, Slots(method.workspace(scene, self._rules.step_limit))
+            self._work = sizes, Slots(method.workspace(scene, rules.step_limit))
         self._frictions[row] = friction
         began = time.perf_counter()
-        method.run_cases(row, row + 1, part, cases, FARTHEST_START, Slots(self._rules), self._work[1], self._slots)
+        method.run_cases(row, row + 1, part, cases, FARTHEST_START, Slots(rules), self._work[1], self._slots)
         self.solve_s[row] = time.perf_counter() - began
 
     def drives(self) -> DriveEnds:

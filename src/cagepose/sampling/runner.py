@@ -69,7 +69,8 @@ class Runner:
         if workers is not None:
             expect_count(workers, "workers")
         self.study, self._workers = study, workers
-        self._is_judged_by_forces = bool(study.model.forces) and "force" in (study.model.accept or "")
+        formulas = (study.model.accept or "", *(study.model.compute or {}).values())
+        self._is_judged_by_forces = bool(study.model.forces) and any("force" in formula for formula in formulas)
         nominal: Any = deepcopy(study.scene_text.yaml.data)
         for one in study.varied:
             set_value(nominal, one.path, one.nominal)
@@ -90,7 +91,7 @@ class Runner:
     def run(self, values: FloatArray, *, with_forces: bool = False, told: Told | None = None) -> Outcomes:
         """Run rows of varied numbers, (n, n_varied), in the scene file's unit.
 
-        With forces, too, if ``accept`` may ask for them. ``told``: hears of rows whose scenes are built one by one.
+        With forces, too, if a formula may ask for them. ``told``: hears of rows whose scenes are built one by one.
 
         Raises
         ------
