@@ -123,7 +123,7 @@ def _row(
 
 def _rows_of(part: Shape | FloatArray, number: int) -> list[Row]:
     if isinstance(part, np.ndarray):
-        return _hull_rows(hull_of(part[None]), Pose(), 0.0, number)
+        return [_row(VERTEX, number, part, NOWHERE, NOWHERE, 0.0, 0.0, [], np.inf, part[None])]
     if isinstance(part, Box):
         return _hull_rows(hull_of(part.corners_object()), Pose(), 0.0, number)
     if isinstance(part, Rounded):
