@@ -40,7 +40,7 @@ KINDS = "give one of: uniform, normal, triangular, grid, steps"
 # What is broken, the text to replace, what to put there, and the line that must come out, or its beginning.
 EDITS = [
     ("unknown key", "watch:", "wach:", "7:1: wach: is no known key; did you mean watch? known keys: scene, vary,"
-     " watch, accept, sample, forces, sensitivities, map"),
+     " watch, compute, accept, sample, forces, sensitivities, map"),
     ("no scene", "scene: scene.yaml\n", "", "1:1: scene: is missing; add it, for example scene: scene.yaml"),
     ("no sample", "sample: {method: sobol, runs: 100, seed: 1}\n", "", "1:1: sample: is missing; add it"),
     ("nothing varies", STUDY[STUDY.index("vary:") : STUDY.index("sample:")], "vary: {}\n",
@@ -118,6 +118,21 @@ EDITS = [
     ("an expression that reads", "abs(pitch_deg)", "verdict.__class__.__mro__",
      "9:9: accept: has the unknown name verdict.__class__.__mro__; known names: parameters.side"),
     ("an unknown column", "abs(corner.z)", "abs(tip.z)", "9:9: accept: has the unknown name tip.z; known names:"),
+    ("a formula of what there is not", "watch:", "compute:\n  far: hypot(tip.x, 1)\nwatch:",
+     "8:8: compute.far: has the unknown name tip.x; known names: parameters.side"),
+    ("a formula that comes to no number", "watch:", "compute:\n  far: pitch_deg > 1\nwatch:",
+     "8:8: compute.far: comes to no number; write a formula"),
+    ("a formula of another one that follows", "watch:", "compute:\n  far: 2 * near\n  near: pitch_deg\nwatch:",
+     "8:8: compute.far: has the unknown name near"),
+    ("a function of too few", "watch:", "compute:\n  far: atan2(pitch_deg)\nwatch:",
+     "8:8: compute.far: cannot be worked out (atan2 of 1)"),
+    ("a function that there is not", "watch:", "compute:\n  far: open('x')\nwatch:",
+     "8:8: compute.far: calls open, which no expression may; write numbers, names, + - * / **, comparisons, and, or,"
+     " not, abs, min, max, sqrt"),
+    ("a root of less than nothing", "watch:", "compute:\n  far: sqrt(-1)\nwatch:",
+     "8:8: compute.far: comes to no number (sqrt in sqrt(-1)); change it"),
+    ("a column for the second time", "watch:", "compute:\n  yaw_deg: 2 * pitch_deg\nwatch:",
+     "8:12: compute.yaw_deg: gives the column yaw_deg a second meaning; rename what is computed"),
     ("no truth", STUDY[STUDY.index("accept:") :], "accept: pitch_deg\n", "9:9: accept: is no comparison"),
     ("no expression", STUDY[STUDY.index("accept:") :], 'accept: "pitch_deg <"\n', "9:9: accept: is no expression"),
     ("text that is compared with numbers", "verdict == 'rests'", "verdict < 3", "9:9: accept: cannot be worked out"),

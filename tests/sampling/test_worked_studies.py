@@ -23,7 +23,7 @@ def test_a_worked_study_is_right_and_fast(path: Path) -> None:
     text = with_values(path.read_text(encoding="utf-8"), {("sample", "runs"): 32})
     study = parse_study(text, str(path))
     assert study.model.sample.runs == 32
-    assert Runner(study).is_batch
+    assert Runner(study).is_batch == (path.stem != "clutch-tolerances")  # which varies shapes
 
 
 @pytest.mark.parametrize("path", DESIGNS, ids=[path.stem for path in DESIGNS])

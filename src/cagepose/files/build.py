@@ -66,7 +66,7 @@ def build_scene(
     SceneError
         All that the model found wrong, with paths from the root of the scene file.
     """
-    builder = _Builder(model.units.length if model.units else "mm", folder)
+    builder = Builder(model.units.length if model.units else "mm", folder)
     held = builder.make(("object",), builder.object, model)
     cage = builder.make(("cage",), builder.cage, model, table)
     loads = [builder.make(("loads", index), load_of, load, builder.unit) for index, load in enumerate(model.loads)]
@@ -96,13 +96,23 @@ def build_scene(
     return Built(scene, tuple(dict.fromkeys(builder.notes)))
 
 
-class _Builder:
+class Builder:
+    """Makes parts of a scene whose file has lengths in one unit, and notes what is wrong with them.
+
+    Attributes
+    ----------
+    problems, notes
+        What is wrong, and what of meshes is left out.
+    pieces
+        Names of what meshes are, by body and index.
+    """
+
     def __init__(self, unit: LengthUnit, folder: Path) -> None:
         self.unit: LengthUnit = unit
         self.folder = folder
         self.problems: list[Problem] = []
         self.notes: list[str] = []
-        self.pieces: dict[tuple[Body, int], list[str]] = {}  # names of what meshes are, by body and index
+        self.pieces: dict[tuple[Body, int], list[str]] = {}
 
     def make(
         self, prefix: tuple[Key, ...], maker: Callable[Given, Noun], *args: Given.args, **kwargs: Given.kwargs

@@ -1,25 +1,26 @@
 """Expressions of scene and study files: arithmetic and comparisons of named numbers, and nothing else.
 
 simpleeval walks the parsed text; of what it can do we leave in names, numbers, text, arithmetic, comparisons, ``and``,
-``or``, ``not``, and three functions. Names may stand for arrays, so that one walk answers for all rows of a table, each
+``or``, ``not``, and a few functions. Names may stand for arrays, so that one walk answers for all rows of a table, each
 row with the bits that it has by itself. What by itself is an error is NaN, and false as the answer of a comparison.
 """
 
 from __future__ import annotations
 
 import ast
+import math
 import operator
 import unicodedata
 from collections.abc import Callable, Mapping
 from functools import reduce
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from simpleeval import FeatureNotAvailable, FunctionNotDefined, NameNotDefined, OperatorNotDefined, SimpleEval
 
 LONGEST_FORMULA = 1000
 """Characters: what is longer is no formula of a person, and deep nesting would end Python's stack."""
-_ALLOWED = "write numbers, names, + - * / **, comparisons, and, or, not, abs, min, max"
+_ALLOWED = "write numbers, names, + - * / **, comparisons, and, or, not"
 
 
 class Expression:
@@ -39,6 +40,9 @@ class Expression:
     1.25
     """
 
+    functions: ClassVar[Mapping[str, Callable[..., Any]]]
+    """Those that it may call."""
+
     def __init__(self, text: str) -> None:
         self.text = text.strip()
         if len(self.text) > LONGEST_FORMULA:
@@ -46,10 +50,14 @@ class Expression:
         try:
             self._tree = ast.parse(self.text, mode="eval").body
         except (SyntaxError, ValueError, MemoryError, RecursionError):
-            raise ValueError(f"is no expression ({_short(self.text)}); {_ALLOWED}") from None
+            raise ValueError(f"is no expression ({_short(self.text)}); {self._allowed}") from None
+
+    @property
+    def _allowed(self) -> str:
+        return f"{_ALLOWED}, {', '.join(self.functions)}"
 
     def __repr__(self) -> str:
-        return f"<Expression {_short(self.text)!r}>"
+        return f"<{type(self).__name__} {_short(self.text)!r}>"
 
     def value(self, names: Mapping[str, Any]) -> Any:
         """Return what it comes to; ``names`` are numbers, text, or arrays of either.
@@ -59,7 +67,7 @@ class Expression:
         ValueError
             An unknown name, something else than arithmetic and comparisons, or a number that there is not.
         """
-        evaluator = _Evaluator({_read_as(name): value for name, value in names.items()})
+        evaluator = _Evaluator({_read_as(name): value for name, value in names.items()}, self.functions)
         try:
             with np.errstate(all="ignore"):
                 return evaluator.known(evaluator.eval(self.text, previously_parsed=self._tree))
@@ -69,11 +77,15 @@ class Expression:
             hint = f'; text stands in quotes, as in {texts[0]} == "{error.name}"' if texts else ""
             raise ValueError(f"has the unknown name {error.name}; known names: {known}{hint}") from None
         except FunctionNotDefined as error:
-            raise ValueError(f"calls {error.func_name}, which no expression may; {_ALLOWED}") from None
+            raise ValueError(f"calls {error.func_name}, which no expression may; {self._allowed}") from None
         except OperatorNotDefined as error:
-            raise ValueError(f"holds the operator {type(error.attr).__name__}; {_ALLOWED}") from None
+            raise ValueError(f"holds the operator {type(error.attr).__name__}; {self._allowed}") from None
         except FeatureNotAvailable:
-            raise ValueError(f"holds more than arithmetic and comparisons ({_short(self.text)}); {_ALLOWED}") from None
+            raise ValueError(
+                f"holds more than arithmetic and comparisons ({_short(self.text)}); {self._allowed}"
+            ) from None
+        except _NoNumber as error:
+            raise ValueError(f"comes to no number ({error.args[0]} in {_short(self.text)}); change it") from None
         except ZeroDivisionError:
             raise ValueError(f"divides by zero ({_short(self.text)}); change it or the parameters") from None
         except OverflowError:
@@ -108,6 +120,41 @@ def _real_power(base: float, exponent: float) -> float:
     return found if is_known and isinstance(found, float) else np.nan
 
 
+class Formula(Expression):
+    """An expression of columns: with functions of angles and roots, too.
+
+    >>> Formula("degrees(acos(half))").value({"half": 0.5})
+    60.00000000000001
+    """
+
+
+class _NoNumber(Exception):
+    """A function is not known of some numbers; its name says which."""
+
+
+def _of_each(name: str, function: Callable[..., float]) -> Callable[..., Any]:
+    """Return a function of numbers as one of arrays, too: each element by itself, as NumPy's may differ in the last
+    digit. NaN where it is not known.
+    """
+
+    def of(*values: float) -> float:
+        try:
+            return function(*values)
+        except (ValueError, OverflowError):
+            return math.nan
+
+    def of_all(*values: Any) -> Any:
+        if not _is_array(*values):
+            found = of(*values)
+            if math.isnan(found):
+                raise _NoNumber(name)
+            return found
+        columns = [array.tolist() for array in np.broadcast_arrays(*values)]
+        return np.array([of(*row) for row in zip(*columns, strict=True)], dtype=np.float64)
+
+    return of_all
+
+
 def _least(*values: Any) -> Any:
     return reduce(np.minimum, values) if _is_array(*values) else min(*values)
 
@@ -131,12 +178,18 @@ _OPERATORS: dict[type, Callable[..., Any]] = {
     ast.GtE: operator.ge,
 }
 FUNCTIONS: dict[str, Callable[..., Any]] = {"abs": abs, "min": _least, "max": _greatest}
+"""What expressions of scenes may call."""
+_OF_ONE = (math.sqrt, math.sin, math.cos, math.tan, math.asin, math.acos, math.atan, math.degrees, math.radians)
+_OF_TWO = (math.atan2, math.hypot)
+_N_TAKEN = {"abs": 1, **{each.__name__: n for n, kind in ((1, _OF_ONE), (2, _OF_TWO)) for each in kind}}
+Expression.functions = FUNCTIONS
+Formula.functions = FUNCTIONS | {each.__name__: _of_each(each.__name__, each) for each in (*_OF_ONE, *_OF_TWO)}
 
 
 class _Evaluator(SimpleEval):  # type: ignore[misc]  # it has no types
-    def __init__(self, names: Mapping[str, Any]) -> None:
+    def __init__(self, names: Mapping[str, Any], functions: Mapping[str, Callable[..., Any]]) -> None:
         own: dict[type, Callable[..., Any]] = {ast.Div: self._quotient, ast.Pow: self._power}
-        super().__init__(operators={**_OPERATORS, **own}, functions=FUNCTIONS, names=names)
+        super().__init__(operators={**_OPERATORS, **own}, functions=functions, names=names)
         self._unknown: Any = np.False_
         self.nodes = {
             ast.Name: self._eval_name,
@@ -195,12 +248,16 @@ class _Evaluator(SimpleEval):  # type: ignore[misc]  # it has no types
         raise NameNotDefined(name, self.expr)
 
     def _eval_call(self, node: ast.Call) -> Any:
-        if not isinstance(node.func, ast.Name) or node.func.id not in FUNCTIONS or node.keywords:
+        if not isinstance(node.func, ast.Name) or node.func.id not in self.functions or node.keywords:
             raise FunctionNotDefined(ast.unparse(node.func), self.expr)
         name, values = node.func.id, [self._eval(argument) for argument in node.args]
-        if (name == "abs") != (len(values) == 1):
+        n_taken = _N_TAKEN.get(name)
+        if len(values) < 2 if n_taken is None else len(values) != n_taken:
             raise TypeError(f"{name} of {len(values)}")
-        return FUNCTIONS[name](*values)
+        found = self.functions[name](*values)
+        if name in _N_TAKEN and name != "abs" and _is_array(found):
+            self._unknown = self._unknown | (np.isnan(found) & ~np.logical_or.reduce([np.isnan(one) for one in values]))
+        return found
 
     def _eval_boolop(self, node: ast.BoolOp) -> Any:
         join = np.logical_and if isinstance(node.op, ast.And) else np.logical_or

@@ -8,6 +8,7 @@ from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 from pydantic import ValidationError
 
@@ -20,6 +21,7 @@ from cagepose.files.messages import Finding, schema_findings, shown
 from cagepose.files.parameters import Expressions, evaluated, expression_at
 from cagepose.files.points_file import POINTS_KEY, PointsTable, read_points
 from cagepose.files.read import read_text, starts_as_run
+from cagepose.files.scene_parts import OtherScene, SceneParts, is_number, is_parameter
 from cagepose.files.schema import SceneModel
 from cagepose.files.schema_cage import PointsFileModel
 from cagepose.files.sound_parts import problems_beside
@@ -99,6 +101,14 @@ def parse_scene(text: str, name: str = "scene.yaml", set_values: Sequence[str] =
     return SceneText(text, parse_yaml(text, name), Path(name).parent).scene_file(set_values).scene
 
 
+class _Begun(NamedTuple):
+    """A scene that others are built of, its parts, and the paths at which it has other values than its file."""
+
+    file: SceneFile
+    parts: SceneParts
+    paths: frozenset[KeyPath]
+
+
 @dataclass(frozen=True)
 class SceneText:
     """The text of a scene file, read but not checked.
@@ -151,6 +161,8 @@ class SceneText:
         SceneError
             Such a scene cannot be used.
         """
+        if (found := self._with_numbers(values)) is not None:
+            return found
         data = deepcopy(self.yaml.data)
         changed = [set_value(data, path, value) for path, value in values.items()]
         # An expression that gives way to a number is none any more.
@@ -159,7 +171,31 @@ class SceneText:
         attempt = _Attempt(data, self.folder, known if is_kept else None)
         if attempt.scene_file is None:
             raise SceneError([*attempt.table_problems, *(finding.problem for finding in attempt.findings)])
+        if is_kept:
+            parts = SceneParts(attempt.scene_file.scene, attempt.data, attempt.scene_file.length_unit)
+            self._begun[:] = [_Begun(attempt.scene_file, parts, frozenset(values))]
         return attempt.scene_file
+
+    def _with_numbers(self, values: Mapping[KeyPath, object]) -> SceneFile | None:
+        """Return the scene with other values, of the parts of one that was built before; None: build it as a whole."""
+        if not self._begun or not self._begun[0].paths <= values.keys():
+            return None
+        begun, known = self._begun[0], self._expressions
+        numbers = {path: float(value) for path, value in values.items() if is_number(value)}
+        if len(numbers) < len(values) or any(path in known.by_path for path in numbers):
+            return None
+        try:
+            of_expressions = known.values(
+                {str(path[1]): number for path, number in numbers.items() if is_parameter(path)}
+            )
+            return replace(begun.file, scene=begun.parts.scene_with(numbers | of_expressions))
+        except (SceneError, OtherScene):
+            return None
+
+    @cached_property
+    def _begun(self) -> list[_Begun]:
+        """The scene that others are built of, and what it is made of; empty: there is none yet."""
+        return []
 
     @cached_property
     def _expressions(self) -> Expressions:
@@ -209,6 +245,8 @@ class _Attempt:
     ----------
     scene_file
         None if anything is wrong.
+    data
+        With every expression as its number.
     findings
         Problems with paths into the data.
     table, table_problems
@@ -221,6 +259,7 @@ class _Attempt:
         self.table_problems: list[FileProblem] = []
         written = data
         data, of_expressions = evaluated(data, parsed)
+        self.data = data
         self.findings += [Finding(problem, False) for problem in of_expressions]
         self.table = self._read_table(value_at(data, POINTS_KEY), folder)
         try:

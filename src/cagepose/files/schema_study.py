@@ -155,6 +155,13 @@ class RunsModel(Mapping):
     watch: dict[ColumnName, WatchModel] | None = Field(
         None, description="Points whose final places become columns.", examples=[{"tip": {"point": [600, 0, 0]}}]
     )
+    compute: dict[ColumnName, str] | None = Field(
+        None,
+        description="More columns, each an expression of others and of those before it: varied numbers, the final pose,"
+        " watched points, forces; with sqrt, hypot, sin, cos, tan, asin, acos, atan, atan2 (radians), degrees,"
+        " radians.",
+        examples=[{"phi": "degrees(atan2(position_x, position_y))"}],
+    )
     accept: str | None = Field(
         None,
         description="Which runs are good: an expression of the columns; left out: those that end at rest.",

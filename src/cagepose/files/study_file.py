@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from cagepose.errors import FileProblem, Problem, SceneError, SceneFileError, key_path
-from cagepose.files.expression import Expression
+from cagepose.files.expression import Formula
 from cagepose.files.file_kind import expect_kind
 from cagepose.files.files_named import files_named
 from cagepose.files.key_path import Path as KeyPath
@@ -72,6 +72,8 @@ class StudyFile:
         The scene's file, and the scene with each varied number at its nominal value.
     varied
         In the order of the file.
+    compute
+        By the name of its column, in the order of the file.
     accept
         None: left out.
     """
@@ -81,7 +83,8 @@ class StudyFile:
     scene_text: SceneText
     nominal: SceneFile
     varied: tuple[VariedKey, ...]
-    accept: Expression | None
+    compute: dict[str, Formula]
+    accept: Formula | None
 
     def __repr__(self) -> str:
         return f"<StudyFile of {self.nominal.scene.name!r}: {few(one.key for one in self.varied)} vary>"
@@ -150,14 +153,16 @@ def study_of(yaml: YamlSource, model: StudyModel, text: str, changed: str | None
     varied = _varied_keys(model, places, scene_text.yaml.data, problems)
     _check_sample(model.sample, {key: one for key, one in model.vary.items() if key != changed}, problems)
     _check_map(model, varied, problems)
-    accept = _accept(model, problems)
+    compute = {name: _formula(text, ("compute", name), problems) for name, text in (model.compute or {}).items()}
+    accept = None if model.accept is None else _formula(model.accept, ("accept",), problems)
     if problems:
         raise placed(yaml, [Finding(problem, problem.path[0] in ("vary", "change")) for problem in problems])
     try:
         nominal = scene_text.scene_with({one.path: one.nominal for one in varied})
     except SceneError as error:
         raise placed(yaml, [_of_nominal(problem, varied, places) for problem in error.problems]) from None
-    return StudyFile(text, model, scene_text, nominal, varied, accept)
+    computed = {name: formula for name, formula in compute.items() if formula is not None}
+    return StudyFile(text, model, scene_text, nominal, varied, computed, accept)
 
 
 def placed(yaml: YamlSource, findings: list[Finding]) -> SceneFileError:
@@ -252,13 +257,12 @@ def _check_map(model: StudyModel, varied: tuple[VariedKey, ...], problems: list[
             problems.append(Problem(("map", "over", index), message))
 
 
-def _accept(model: StudyModel, problems: list[Problem]) -> Expression | None:
-    if model.accept is None:
-        return None
+def _formula(text: str, place: KeyPath, problems: list[Problem]) -> Formula | None:
+    """Return an expression of columns; None: it is none, and why is among the problems."""
     try:
-        return Expression(model.accept)
+        return Formula(text)
     except ValueError as error:
-        problems.append(Problem(("accept",), str(error)))
+        problems.append(Problem(place, str(error)))
         return None
 
 

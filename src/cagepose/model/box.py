@@ -63,6 +63,10 @@ class Box(Shape):
     def nodes_body(self) -> FloatArray:
         return self.corners_object()
 
+    def limits_m(self) -> FloatArray:
+        corners = self.corners_object()
+        return np.array([corners.min(axis=0), corners.max(axis=0)])
+
     def farthest_m(self, point_body: FloatArray) -> float:
         return float(np.linalg.norm(self.corners_object() - point_body, axis=1).max())
 

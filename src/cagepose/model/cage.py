@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -106,6 +107,12 @@ class Cage:
         own_names, own_places = [body.name for body in bodies], [("bodies", body.name) for body in bodies]
         check_names([*own_names, *self.element_names], [*own_places, *self.element_paths], problems)
         problems.raise_if_any()
+
+    def placed_at(self, pose: Pose) -> Cage:
+        """Return the same cage at another pose in the world."""
+        moved = copy.copy(self)
+        object.__setattr__(moved, "pose_world_cage", pose)
+        return moved
 
     def __repr__(self) -> str:
         return f"<Cage: {self._contents}>"

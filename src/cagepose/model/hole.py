@@ -9,6 +9,7 @@ from itertools import pairwise
 from typing import ClassVar, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.errors import Key
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, degrees_of, is_finite
@@ -111,16 +112,19 @@ class Hole(Turned):
         height = self.chamfer.width_m / math.tan(self.chamfer.angle_rad)
         return bottom, (-height, self.radius_m), (0.0, self.radius_m + self.chamfer.width_m)
 
+    def is_across(self, normals_body: FloatArray) -> NDArray[np.bool_]:
+        """Return which planes of unit normals (n, 3) are across the hole, (n,)."""
+        (a, b, c), (x, y, z) = self.pose_body_shape.rotation[:, 2], normals_body.T
+        sines: FloatArray = np.sqrt((b * z - c * y) ** 2 + (c * x - a * z) ** 2 + (a * y - b * x) ** 2)
+        return sines <= DISTANCE_OF_FACE
+
     def circle_in(self, point_body: FloatArray, normal_body: FloatArray) -> tuple[FloatArray, float] | None:
         """Return centre and radius, metres, of the circle that the hole cuts out of a plane across it, given by a point
         and a unit normal; None: it does not reach there, or the plane is aslant.
         """
         axis, mouth = self.pose_body_shape.rotation[:, 2], self.pose_body_shape.position_m
         height, slack = float((point_body - mouth) @ axis), self._slack_m
-        if (
-            float(np.linalg.norm(np.cross(axis, normal_body))) > DISTANCE_OF_FACE
-            or not -self.depth_m - slack <= height <= slack
-        ):
+        if not (self.is_across(normal_body[None])[0] and -self.depth_m - slack <= height <= slack):
             return None
         heights, radii = zip(*self.rims, strict=True)
         return mouth + height * axis, float(np.interp(height, heights, radii))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from inspect import signature
 from typing import Any, get_args
 
@@ -264,7 +265,7 @@ class Scene:
         SceneError
             As for a new scene.
         """
-        return Scene(**{name: getattr(self, name) for name in signature(Scene).parameters} | others)
+        return Scene(**{name: getattr(self, name) for name in _arguments()} | others)
 
     @property
     def touch_m(self) -> float:
@@ -273,6 +274,12 @@ class Scene:
 
 
 _set_field = object.__setattr__
+
+
+@cache
+def _arguments() -> tuple[str, ...]:
+    """Return what a scene is made of, by name."""
+    return tuple(signature(Scene).parameters)
 
 
 def _check_friction_of(friction_of: Mapping[str, float], held: Object, cage: Cage, problems: ProblemList) -> None:

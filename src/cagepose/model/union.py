@@ -90,8 +90,8 @@ def _is_clean(hole: Hole, shapes: Sequence[Shape], near: Sequence[int]) -> bool:
     """Whether a hole takes all its volume away from one shape, which has it to itself there; given the places of those
     that are near it.
     """
-    beside = [shapes[place] for place in near if not are_apart(hole, shapes[place])]
-    return len(beside) == 1 and beside[0].name in hole.in_ and hole.is_within(beside[0])
+    around = [shapes[place] for place in near if shapes[place].name in hole.in_ and hole.is_within(shapes[place])]
+    return len(around) == 1 and all(shapes[place] is around[0] or are_apart(hole, shapes[place]) for place in near)
 
 
 def _groups(parts: Sequence[Shape], near: Sequence[Sequence[int]]) -> list[list[Shape]]:

@@ -13,7 +13,7 @@ from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.contact.loads import FIXED_FORCE, SPRING, PhaseLoad
 from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases
-from cagepose.kernels.outcome.endings import INVALID, NOT_RUN, empty_endings
+from cagepose.kernels.outcome.endings import INVALID, NOT_RUN, Endings, empty_endings
 from cagepose.kernels.outcome.trace import BLOCKED, JAMS, STOPS
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.geometry import sizes_with_points
@@ -32,6 +32,22 @@ class DriveEnds(NamedTuple):
     shares: FloatArray
     greatest: FloatArray
     jam_possible: NDArray[np.bool_]
+
+
+def drive_ends(scene: Scene, endings: Endings, frictions: FloatArray) -> DriveEnds:
+    """Return what came of the drives of runs of scenes that differ in numbers, given the friction coefficient of each,
+    (n,), or of all, (1,).
+    """
+    codes, drives = endings.verdicts, np.array([bool(load.drive) for load in scene.loads])
+    is_driven = drives & ((endings.shares > 0.0) | np.isin(codes, (BLOCKED, JAMS, STOPS)))
+    different, places = np.unique(frictions, return_inverse=True)
+    friction = np.array([greatest_friction(scene, one) for one in different.tolist()])[places]
+    could_jam = endings.least_jams <= friction[:, None]
+    return DriveEnds(
+        np.where(drives & (codes != NOT_RUN) & (codes != INVALID), endings.shares, np.nan),
+        np.where(is_driven, endings.greatest, np.nan),
+        is_driven & could_jam,
+    )
 
 
 class Batch:
@@ -68,17 +84,7 @@ class Batch:
 
     def drives(self) -> DriveEnds:
         """Return what came of the drives of all runs, which are done."""
-        endings, codes = self.endings, self.endings.verdicts
-        drives = np.array([bool(load.drive) for load in self._scene.loads])
-        is_driven = drives & ((endings.shares > 0.0) | np.isin(codes, (BLOCKED, JAMS, STOPS)))
-        different, places = np.unique(self._frictions, return_inverse=True)
-        friction = np.array([greatest_friction(self._scene, one) for one in different.tolist()])[places]
-        could_jam = endings.least_jams <= friction[:, None]
-        return DriveEnds(
-            np.where(drives & (codes != NOT_RUN) & (codes != INVALID), endings.shares, np.nan),
-            np.where(is_driven, endings.greatest, np.nan),
-            is_driven & could_jam,
-        )
+        return drive_ends(self._scene, self.endings, self._frictions)
 
     def stop(self) -> None:
         """Let all pieces that run now end, with KeyboardInterrupt."""

@@ -18,7 +18,6 @@ from cagepose.kernels.native.slots import Slots
 from cagepose.kernels.outcome.cases import Cases, Part
 from cagepose.model.boundary.body_parts import shifted
 from cagepose.model.checks import FloatArray, as_vector
-from cagepose.model.geometry import cage_bodies
 from cagepose.model.methods import DEFAULT_METRIC
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -66,7 +65,7 @@ def cases_of(scene: Scene, friction: float, start: Pose | None = None, displaced
         cage.position_m[None],
         cage.quaternion_wxyz[None],
         scene.cage.points_cage[None],
-        cage_bodies(scene.cage, scene.touch_m),
+        scene.geometry.cage,
         at_start(scene) if displaced is None else displaced,
         drives_of(scene),
         held.position_m[None],

@@ -19,11 +19,13 @@ from cagepose.kernels.outcome.endings import INVALID, NOT_RUN
 from cagepose.kernels.outcome.trace import RESTS, VERDICT_NAMES
 from cagepose.kernels.stability.proof import OTHER_ONSET, TOO_MANY_CHOICES, UNIQUENESS_NOT_SHOWN
 from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_kinds, expect_count, finite_array
+from cagepose.model.methods import DEFAULT_METHOD
 from cagepose.model.pose import placed
 from cagepose.model.scene import Scene
 from cagepose.runs.batch import Batch
 from cagepose.runs.frames import ANGLES, POSITION, data_frame
 from cagepose.runs.methods import chosen_method
+from cagepose.runs.scene_rows import SceneRows
 from cagepose.runs.variation import Variation
 
 LONGEST_PIECE = 256
@@ -195,6 +197,11 @@ def run_many(
     return _columns(all_scenes, [chosen.name for chosen in methods], batches, solve_s)
 
 
+def runs_of_rows(scene: Scene, rows: SceneRows) -> Runs:
+    """Return the results of runs of scenes that differ from one in numbers, which are done."""
+    return _columns([scene], [scene.method or DEFAULT_METHOD], [rows], float(rows.solve_s.sum()))
+
+
 def _run_all(batches: Sequence[Batch], n_threads: int, progress: Callable[[float], None] | None) -> None:
     n_runs, n_done = sum(batch.n_runs for batch in batches), 0
     length = max(1, min(LONGEST_PIECE, n_runs // (PIECES_FOR_A_THREAD * n_threads)))
@@ -217,7 +224,7 @@ def _run_all(batches: Sequence[Batch], n_threads: int, progress: Callable[[float
         executor.shutdown(cancel_futures=True)
 
 
-def _columns(scenes: Sequence[Scene], methods: list[str], batches: Sequence[Batch], solve_s: float) -> Runs:
+def _columns(scenes: Sequence[Scene], methods: list[str], batches: Sequence[Batch | SceneRows], solve_s: float) -> Runs:
     names = np.full(max(INVALID, len(VERDICT_NAMES)) + 2, "", dtype="<U10")
     names[: len(VERDICT_NAMES)] = VERDICT_NAMES
     names[INVALID], names[NOT_RUN] = "invalid", ""

@@ -90,8 +90,7 @@ _WORKSPACES = _Workspaces()
 
 def _workspace(scene: Scene, method: Method, step_limit: int, cases: Cases) -> _Workspace:
     n_phases, n_points = len(scene.loads), len(scene.cage.names)
-    acting = np.asarray(cases.actions).shape[2], np.asarray(cases.drives.legs).shape[2]
-    size = (method.name, n_phases, n_points, len(scene.boxes.half_sizes), step_limit, *acting, *_sizes(scene))
+    size = (method.name, step_limit, *run_sizes(scene, cases))
     kept = _WORKSPACES.by_size
     if size in kept:
         kept.move_to_end(size)
@@ -103,9 +102,13 @@ def _workspace(scene: Scene, method: Method, step_limit: int, cases: Cases) -> _
     return kept[size]
 
 
-def _sizes(scene: Scene) -> tuple[int, ...]:
-    """How many parts, features and nodes the boundaries of a scene have, and how the cage's are divided into bodies."""
+def run_sizes(scene: Scene, cases: Cases) -> tuple[int, ...]:
+    """Return what the memory that one run writes to hangs on: how many phases, points, boxes, actions and legs there
+    are, how many parts, features and nodes the boundaries have, and how the cage's are divided into bodies.
+    """
     held, cage = scene.geometry.held, scene.geometry.cage
     of_bodies = np.bincount(np.asarray(cage.own.parts)["body"], minlength=len(cage.first_nodes) - 1)
-    sizes = (len(rows) for body in (held, cage.own) for rows in (body.parts, body.features, body.nodes))
-    return (*sizes, *cage.first_nodes.tolist(), *of_bodies.tolist())
+    sizes = [len(rows) for body in (held, cage.own) for rows in (body.parts, body.features, body.nodes)]
+    acting = np.asarray(cases.actions).shape[2], np.asarray(cases.drives.legs).shape[2]
+    counts = len(scene.loads), len(scene.cage.names), len(scene.boxes.half_sizes)
+    return (*counts, *acting, *sizes, *cage.first_nodes.tolist(), *of_bodies.tolist())

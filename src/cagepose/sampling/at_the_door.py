@@ -9,7 +9,7 @@ import numpy as np
 from cagepose.files.study_file import StudyFile, VariedKey, refused_at
 from cagepose.model.checks import duplicates
 from cagepose.sampling.distribution import distribution_of
-from cagepose.sampling.row_columns import RowColumns
+from cagepose.sampling.row_columns import NoColumnError, RowColumns
 from cagepose.sampling.runner import Runner
 from cagepose.sampling.sample import Sample
 
@@ -20,20 +20,22 @@ def checked_columns(file: StudyFile, source: str) -> RowColumns:
     Raises
     ------
     SceneFileError
-        Two columns of one name, a scene that its method cannot run, or an ``accept`` without a truth value.
+        Two columns of one name, a scene that its method cannot run, a formula that comes to no column, or an ``accept``
+        without a truth value.
     """
     columns = RowColumns(file)
     for name in duplicates(columns.names):
-        message = f"gives the column {name} a second meaning; rename the point that is watched"
-        raise refused_at(("watch",), file, source, message)
+        message, is_computed = f"gives the column {name} a second meaning; rename", name in file.compute
+        what = "what is computed" if is_computed else "the point that is watched"
+        raise refused_at(("compute", name) if is_computed else ("watch",), file, source, f"{message} {what}")
     nominal = np.array([[one.nominal for one in file.varied]])
     outcomes = Runner(file).run_nominal()
     if outcomes.errors[0] is not None:
         raise refused_at(("scene",), file, source, f"cannot be run: {outcomes.errors[0]}")
     try:
         columns.columns(nominal, outcomes)
-    except ValueError as error:
-        raise refused_at(("accept",), file, source, str(error)) from None
+    except NoColumnError as error:
+        raise refused_at(error.path, file, source, str(error)) from None
     return columns
 
 

@@ -104,7 +104,7 @@ def _map(
 
         def told(outcomes: Outcomes, part: FloatArray) -> None:
             here = slice(len(found), len(found) + len(part))
-            for name, measured in columns.quantities_of(outcomes).items():
+            for name, measured in columns.quantities_of(part, outcomes).items():
                 ends[name][rows[here], places[here]] = measured
             accepted = columns.columns(part, outcomes)["accepted"].tolist()
             for kind in zip(outcomes.verdict.tolist(), accepted, strict=True):

@@ -10,6 +10,8 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from cagepose import __version__
+from cagepose.files.expression import Formula
+from cagepose.files.key_path import Path
 from cagepose.files.study_file import StudyFile
 from cagepose.files.units import from_metres, to_metres
 from cagepose.model.checks import FloatArray
@@ -22,11 +24,27 @@ SAME_LENGTH_OF_SIZE = 1e-8
 """Fraction of the scene's size. Lengths that differ by less are the same."""
 SAME_DEG = 1e-6
 """Degrees. Angles that differ by less are the same."""
+SAME_COMPUTED = 1e-9
+"""Computed numbers that differ by less are the same."""
 SAME_DRIVE = {"drive": 1e-9, "force_max": 1e-9}
 """What is measured of each drive: the share of it that is done, and the greatest force. Shares, and newtons or loads,
 that differ by less are the same."""
 WITHOUT_ANSWER = [REFUSED, *sorted(FAILURES)]
 AXES, ANGLES = ("x", "y", "z"), ("yaw_deg", "pitch_deg", "roll_deg")
+
+
+class NoColumnError(Exception):
+    """What a study asks for is no column.
+
+    Attributes
+    ----------
+    path
+        Where it stands in the study's file.
+    """
+
+    def __init__(self, path: Path, message: str) -> None:
+        super().__init__(message)
+        self.path = path
 
 
 class RowColumns:
@@ -35,8 +53,8 @@ class RowColumns:
     Attributes
     ----------
     varied, quantities
-        Names of the varied numbers, and of what is measured of each run: the final pose, the watched points, and how
-        far each drive got with which force.
+        Names of the varied numbers, and of what is measured of each run: the final pose, the watched points, how far
+        each drive got with which force, and what is computed of these.
     watched
         Those of the quantities that belong to watched points.
     resolution
@@ -63,12 +81,13 @@ class RowColumns:
         self.driven = {load.name: place for place, load in enumerate(scene.loads) if load.drive}
         pose = (*(f"position_{axis}" for axis in AXES), *ANGLES, *self.watched)
         drives = {f"{kind}_{phase}": same for phase in self.driven for kind, same in SAME_DRIVE.items()}
-        self.quantities = (*pose, *drives)
+        self.quantities = (*pose, *drives, *study.compute)
         self.resolution = {name: SAME_DEG if name in ANGLES else lengths for name in pose} | drives
+        self.resolution |= dict.fromkeys(study.compute, SAME_COMPUTED)
         of_quantities = {name: "deg" if name in ANGLES else study.nominal.length_unit for name in pose}
         of_quantities |= {f"drive_{phase}": "" for phase in self.driven}
         of_quantities |= {f"force_max_{phase}": self._unit_along(phase) for phase in self.driven}
-        self.units = study.units | of_quantities
+        self.units = study.units | of_quantities | dict.fromkeys(study.compute, "")
         self.verdicts = ("verdict", *(f"verdict_{load.name}" for load in scene.loads))
         self.touching = {f"touching_{name}": name for name in elements}
         self.forces = {f"force_{name}": name for name in elements} if study.model.forces else {}
@@ -83,10 +102,12 @@ class RowColumns:
         measured = (*self.verdicts, *self.quantities, *jams, *self.touching, *self.forces)
         return ("run", *self.varied, *measured, "accepted", "error", "solve_us")
 
-    def quantities_of(self, outcomes: Outcomes) -> dict[str, FloatArray]:
-        """Return what is measured of runs that came to rest, in the scene file's unit and degrees; NaN: it did not."""
-        rests = at_rest(outcomes.verdict)
-        return {name: np.where(rests, column, np.nan) for name, column in self._measured(outcomes).items()}
+    def quantities_of(self, values: FloatArray, outcomes: Outcomes) -> dict[str, FloatArray]:
+        """Return what is measured of runs that came to rest, in the scene file's unit and degrees; NaN: it did not.
+        ``values``: their varied numbers, (n, n_varied).
+        """
+        columns, rests = self.columns(values, outcomes), at_rest(outcomes.verdict)
+        return {name: np.where(rests, columns[name], np.nan) for name in self.quantities}
 
     def _measured(self, outcomes: Outcomes) -> dict[str, FloatArray]:
         """Return the same of all runs that ended at a pose, wherever they were on their way."""
@@ -100,7 +121,7 @@ class RowColumns:
             turns = self._turns_alone(phase)
             drives += [outcomes.drive_shares[:, place], from_metres(greatest, unit) if turns else greatest]
         found = np.concatenate([found, np.reshape(drives, (-1, len(outcomes)))])
-        return dict(zip(self.quantities, found + 0.0, strict=True))  # -0.0 becomes 0.0
+        return dict(zip(self.quantities, found + 0.0, strict=False))  # -0.0 becomes 0.0; none is computed yet
 
     def _turns_alone(self, phase: str) -> bool:
         """Whether the bodies that a phase drives turn and do not travel, so that a moment drives them."""
@@ -113,7 +134,13 @@ class RowColumns:
         return f"{force} {self._study.nominal.length_unit}" if self._turns_alone(phase) else force
 
     def columns(self, values: FloatArray, outcomes: Outcomes) -> dict[str, NDArray[Any]]:
-        """Return all columns but ``run``, ``error`` and ``solve_us``."""
+        """Return all columns but ``run``, ``error`` and ``solve_us``.
+
+        Raises
+        ------
+        NoColumnError
+            What ``compute`` or ``accept`` asks for is none.
+        """
         columns: dict[str, NDArray[Any]] = dict(zip(self.varied, values.T, strict=True))
         columns["verdict"] = outcomes.verdict
         columns |= zip(self.verdicts[1:], outcomes.phase_verdicts.T, strict=True)
@@ -122,22 +149,38 @@ class RowColumns:
         columns |= zip(self.touching, outcomes.touching.T, strict=True)
         if outcomes.forces is not None:
             columns |= zip(self.forces, outcomes.forces.T, strict=True)
+        has_answer = ~np.isin(columns["verdict"], WITHOUT_ANSWER)
+        for name, formula in self._study.compute.items():
+            columns[name] = np.where(has_answer, self._computed(name, formula, columns), np.nan)
         columns["accepted"] = self._accepted(columns)
-        return columns
+        return {name: columns[name] for name in self.names if name in columns}
+
+    def _computed(self, name: str, formula: Formula, columns: Mapping[str, NDArray[Any]]) -> FloatArray:
+        try:
+            found = np.asarray(formula.value(columns))
+        except ValueError as error:
+            raise NoColumnError(("compute", name), str(error)) from None
+        if found.dtype != np.float64:
+            raise NoColumnError(("compute", name), "comes to no number; write a formula, such as 2 * position_x")
+        return found + 0.0
 
     def _accepted(self, columns: Mapping[str, NDArray[Any]]) -> NDArray[np.bool_]:
         """Return which rows are good, (n,); none that was refused or whose run failed: these have no answer.
 
         Raises
         ------
-        ValueError
+        NoColumnError
             The expression has no truth value.
         """
         if self._study.accept is None:
             return at_rest(columns["verdict"])
-        found = np.asarray(self._study.accept.value(columns))
+        try:
+            found = np.asarray(self._study.accept.value(columns))
+        except ValueError as error:
+            raise NoColumnError(("accept",), str(error)) from None
         if found.dtype != np.bool_:
-            raise ValueError("is no comparison; write what is true of a good run, such as verdict == 'rests'")
+            message = "is no comparison; write what is true of a good run, such as verdict == 'rests'"
+            raise NoColumnError(("accept",), message)
         accepted: NDArray[np.bool_] = ~np.isin(columns["verdict"], WITHOUT_ANSWER) & found
         return accepted
 

@@ -17,8 +17,10 @@ from cagepose.files.key_path import set_value, value_at
 from cagepose.files.parameters import Expressions, evaluated
 from cagepose.files.study_file import StudyFile
 from cagepose.model.checks import FloatArray, expect_count
+from cagepose.model.scene import Scene
 from cagepose.runs.end_forces import end_forces
-from cagepose.runs.many import run_many
+from cagepose.runs.many import run_many, runs_of_rows
+from cagepose.runs.scene_rows import SceneRows
 from cagepose.runs.solve import run
 from cagepose.sampling.batch_columns import BatchColumns, Columns
 from cagepose.sampling.outcome import Outcomes, empty_outcomes, outcomes_of
@@ -67,7 +69,8 @@ class Runner:
         if workers is not None:
             expect_count(workers, "workers")
         self.study, self._workers = study, workers
-        self._is_judged_by_forces = bool(study.model.forces) and "force" in (study.model.accept or "")
+        formulas = (study.model.accept or "", *(study.model.compute or {}).values())
+        self._is_judged_by_forces = bool(study.model.forces) and any("force" in formula for formula in formulas)
         nominal: Any = deepcopy(study.scene_text.yaml.data)
         for one in study.varied:
             set_value(nominal, one.path, one.nominal)
@@ -88,7 +91,7 @@ class Runner:
     def run(self, values: FloatArray, *, with_forces: bool = False, told: Told | None = None) -> Outcomes:
         """Run rows of varied numbers, (n, n_varied), in the scene file's unit.
 
-        With forces, too, if ``accept`` may ask for them. ``told``: hears of rows whose scenes are built one by one.
+        With forces, too, if a formula may ask for them. ``told``: hears of rows whose scenes are built one by one.
 
         Raises
         ------
@@ -120,21 +123,39 @@ class Runner:
         return self._run_one_by_one(values, bool(self.study.model.forces))
 
     def _run_one_by_one(self, values: FloatArray, has_forces: bool, told: Told | None = None) -> Outcomes:
-        outcomes = empty_outcomes(self.study.nominal.scene, len(values), with_forces=has_forces)
+        """Build and run the scene of each row; with forces, read all of each run."""
+        nominal, refused = self.study.nominal.scene, dict[int, str]()
+        outcomes, rows = empty_outcomes(nominal, len(values), with_forces=has_forces), SceneRows(nominal, len(values))
         for row in range(len(values)):
-            self._write_one_by_one(values, [row], outcomes)
+            try:
+                if has_forces:
+                    outcomes.write_run(row, run(self._scene(values[row])))
+                else:
+                    rows.run(row, self._scene(values[row]))
+            except SceneError as error:
+                refused[row] = str(error)
             if told is not None and row + 1 < len(values):
                 told(row + 1)
+        if not has_forces:
+            outcomes = outcomes_of(runs_of_rows(nominal, rows))
+            outcomes.solve_us = rows.solve_s * 1e6
+            for row in np.flatnonzero(outcomes.phase_verdicts[:, 0] == "invalid").tolist():
+                outcomes.write_run(row, run(self._scene(values[row])))
+        for row, message in refused.items():
+            outcomes.write_refusal(row, message)
         return outcomes
 
     def _write_one_by_one(self, values: FloatArray, rows: Iterable[int], outcomes: Outcomes) -> None:
-        paths = [one.path for one in self.study.varied]
         for row in rows:
             try:
-                scene = self.study.scene_text.scene_with(dict(zip(paths, values[row].tolist(), strict=True))).scene
-                outcomes.write_run(row, run(scene))
+                outcomes.write_run(row, run(self._scene(values[row])))
             except SceneError as error:
                 outcomes.write_refusal(row, str(error))
+
+    def _scene(self, numbers: FloatArray) -> Scene:
+        """Return the scene of a row of varied numbers, (n_varied,)."""
+        paths = [one.path for one in self.study.varied]
+        return self.study.scene_text.scene_with(dict(zip(paths, numbers.tolist(), strict=True))).scene
 
     def _run_batch(self, values: FloatArray, has_forces: bool) -> Outcomes:
         columns = self._columns(values)

@@ -63,7 +63,7 @@ def sensitivities(
         rows = np.stack([one.values(share) for one, share in zip(distributions, shares.T, strict=True)], axis=1)
         outcomes = runner.run(rows)
         accepted = columns.columns(rows, outcomes)[ACCEPTED].astype(np.float64)
-        parts.append({ACCEPTED: accepted, **columns.quantities_of(outcomes)})
+        parts.append({ACCEPTED: accepted, **columns.quantities_of(rows, outcomes)})
     return [
         _indices(name, np.concatenate([part[name] for part in parts]), problem, seed, columns.resolution.get(name, 0.0))
         for name in (ACCEPTED, *columns.quantities)

@@ -34,7 +34,7 @@ class Study:
         By key of the scene, how the number varies: ``{"parameters.play": {"uniform": [0.2, 1.0]}}``.
     sample
         ``{"method": "sobol", "runs": 10_000, "seed": 1}``.
-    watch, accept, forces, sensitivities, map
+    watch, compute, accept, forces, sensitivities, map
         As in a study file.
 
     Raises
@@ -52,13 +52,15 @@ class Study:
         sample: Mapping[str, Any],
         *,
         watch: Mapping[str, Any] | None = None,
+        compute: Mapping[str, str] | None = None,
         accept: str | None = None,
         forces: bool | None = None,
         sensitivities: bool | None = None,
         map: Mapping[str, Any] | None = None,
     ) -> None:
         content: dict[str, Any] = {"scene": scene_name(scene), "vary": vary, "sample": sample}
-        content |= {"watch": watch, "accept": accept, "forces": forces, "sensitivities": sensitivities, "map": map}
+        content |= {"watch": watch, "compute": compute, "accept": accept}
+        content |= {"forces": forces, "sensitivities": sensitivities, "map": map}
         self._begin(parse_study(study_text(content), "study"), "study")
 
     @classmethod

@@ -73,7 +73,8 @@ def tolerance_rows(
     low, high = np.array([(one.low, one.high) for one in distributions]).T
     steps_ahead, steps_back = np.where(nominal + steps > high, 0.0, steps), np.where(nominal - steps < low, 0.0, steps)
     ways = [way * np.diag(reach) for way in (1.0, 0.5) for reach in (steps_ahead, -steps_back)]
-    measured = columns.quantities_of(runner.run(nominal + np.concatenate([np.zeros((1, len(nominal))), *ways])))
+    values = nominal + np.concatenate([np.zeros((1, len(nominal))), *ways])
+    measured = columns.quantities_of(values, runner.run(values))
     rows, n_varied = [], len(nominal)
     for name, found in measured.items():
         whole, half = (ahead - behind for ahead, behind in found[1:].reshape(2, 2, n_varied))

@@ -72,7 +72,9 @@ def pierced(block: Block, hole: Hole, parts: frozenset[int]) -> Block:
     """Return a block in which faces of some parts are without what a hole cuts out of them."""
     found, circles = list[int](), list[tuple[int, FloatArray, FloatArray, float]]()
     features = block.features
-    is_asked = (features["kind"] == FACE) & np.isin(features["part"], list(parts))
+    is_asked = (
+        (features["kind"] == FACE) & np.isin(features["part"], list(parts)) & hole.is_across(features["direction"])
+    )
     for index in np.flatnonzero(is_asked).tolist():
         point, normal = np.array(features["point"][index]), np.array(features["direction"][index])
         circle = hole.circle_in(point + features["radius"][index] * normal, normal)

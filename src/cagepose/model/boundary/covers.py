@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.record import dtype_of
-from cagepose.kernels.boundary.features import HALF_SPACE, HULL, SEGMENT, TURNED, Cover
+from cagepose.kernels.boundary.features import HALF_SPACE, HULL, SEGMENT, TURNED, Bound, Cover
+from cagepose.model.boundary.convex_pieces import piece_of_box
 from cagepose.model.box import Box
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.facets import Facets
@@ -25,7 +26,7 @@ from cagepose.model.hull import Hull, hull_of
 from cagepose.model.pose import Pose
 from cagepose.model.shapes import Convex, Disc, Rounded, Shape, Turned
 
-BoundRow = tuple[int, FloatArray, FloatArray, float]
+Rows = NDArray[np.void]
 
 NEAR = 8.0
 """In touch tolerances: a cover whose box is no farther from that of a feature may cover it."""
@@ -47,8 +48,8 @@ class Covers(NamedTuple):
         The range of each feature, (n_features,).
     """
 
-    rows: NDArray[np.void]
-    bounds: list[BoundRow]
+    rows: Rows
+    bounds: list[Rows]
     indices: list[int]
     first: NDArray[np.int64]
     last: NDArray[np.int64]
@@ -104,7 +105,7 @@ def covers_of(
         What is this close touches, metres.
     """
     features, of_rows = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
-    rows, bounds, of_parts = list[tuple[object, ...]](), list[BoundRow](), dict[int, int]()
+    rows, bounds, of_parts = list[tuple[object, ...]](), list[Rows](), dict[int, int]()
     for number, part in enumerate(parts):
         if isinstance(part, np.ndarray | Hole | Disc | Facets) or all(number in owner for owner in owners):
             continue
@@ -161,17 +162,20 @@ def _with_openings(
     return found_rows
 
 
-def _solid(part: Shape, bounds: list[BoundRow], touch_m: float) -> tuple[object, ...]:
+def _solid(part: Shape, bounds: list[Rows], touch_m: float) -> tuple[object, ...]:
     """Return a solid part as a row; append its bounds."""
     if isinstance(part, Turned):
         (low, radius), (high, other) = part.rims[0], part.rims[-1]
         return _turned(part.pose_body_shape, (low, radius), (high, other), touch_m)
     if isinstance(part, Box):
-        return _hull(hull_of(part.corners_object()), Pose(), 0.0, bounds, touch_m)
+        piece = piece_of_box(part, 0)
+        return _hull(piece.hull, piece.vertices_m, piece.normals, 0.0, bounds, touch_m)
     if not isinstance(part, Rounded):
         raise TypeError(f"nothing is known that a {part.kind} covers")
     hull = part.hull if isinstance(part, Convex) else hull_of(part.core())
-    return _hull(hull, part.pose_body_shape, part.radius_m, bounds, touch_m)
+    pose = part.pose_body_shape
+    vertices, normals = pose.transform(hull.vertices_m), hull.normals @ pose.rotation.T
+    return _hull(hull, vertices, normals, part.radius_m, bounds, touch_m)
 
 
 def _turned(pose: Pose, low: tuple[float, float], high: tuple[float, float], touch_m: float) -> tuple[object, ...]:
@@ -182,21 +186,32 @@ def _turned(pose: Pose, low: tuple[float, float], high: tuple[float, float], tou
     return TURNED, point, pose.rotation[:, 2], radius, other, end - start, reach, 0, 0, 0, 0, touch_m
 
 
-def _hull(hull: Hull, pose: Pose, radius_m: float, bounds: list[BoundRow], touch_m: float) -> tuple[object, ...]:
-    """Return a hull, blown up by a radius, as a row; append its half-spaces and its edges."""
-    vertices = pose.transform(hull.vertices_m)
-    middle, first = vertices.mean(axis=0), len(bounds)
+def _hull(
+    hull: Hull, vertices: FloatArray, normals: FloatArray, radius_m: float, bounds: list[Rows], touch_m: float
+) -> tuple[object, ...]:
+    """Return a hull, blown up by a radius, as a row; append its half-spaces and its edges. Its vertices and normals are
+    given in the frame of the body.
+    """
+    middle, first = vertices.mean(axis=0), sum(map(len, bounds))
     seen = vertices - middle
-    for loop, normal in zip(hull.faces, hull.normals @ pose.rotation.T, strict=True):
-        corners = seen[list(loop)]
-        bounds.append((HALF_SPACE, normal, NOWHERE, float((corners @ normal).max())))
-        if len(hull.faces) == 2:
-            sides = unit_rows(np.cross(np.roll(corners, -1, axis=0) - corners, normal))
-            bounds += [(HALF_SPACE, side, NOWHERE, float(side @ at)) for side, at in zip(sides, corners, strict=True)]
-    edges = hull.edges.tolist() or [(0, 0)]
-    bounds += [(SEGMENT, seen[start], seen[end], 0.0) for start, end in edges]
+    around, counts = np.concatenate([*hull.faces, ()]).astype(np.int64), np.array(list(map(len, hull.faces)), np.int64)
+    of_corners = np.repeat(normals, counts, axis=0)
+    heights = np.einsum("ij,ij->i", seen[around], of_corners)
+    spaces = [(normals, np.maximum.reduceat(heights, np.cumsum(counts) - counts) if len(counts) else heights)]
+    if len(hull.faces) == 2:
+        following = np.concatenate([(*loop[1:], loop[0]) for loop in hull.faces])
+        sides = unit_rows(np.cross(seen[following] - seen[around], of_corners))
+        spaces.append((sides, np.einsum("ij,ij->i", sides, seen[around])))
+    for directions, limits in spaces:
+        rows = np.zeros(len(limits), dtype_of(Bound))
+        rows["kind"], rows["direction"], rows["limit"] = HALF_SPACE, directions, limits
+        bounds.append(rows)
+    edges = hull.edges if len(hull.edges) else np.zeros((1, 2), np.int64)
+    rows = np.zeros(len(edges), dtype_of(Bound))
+    rows["kind"], rows["direction"], rows["end"] = SEGMENT, seen[edges[:, 0]], seen[edges[:, 1]]
+    bounds.append(rows)
     reach = float(np.linalg.norm(seen, axis=1).max()) + radius_m
-    return HULL, middle, NOWHERE, radius_m, 0.0, 0.0, reach, first, len(bounds), 0, 0, touch_m
+    return HULL, middle, NOWHERE, radius_m, 0.0, 0.0, reach, first, sum(map(len, bounds)), 0, 0, touch_m
 
 
 def _openings(hole: Hole, within: Sequence[Shape], touch_m: float) -> list[tuple[object, ...]]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -15,6 +17,7 @@ from cagepose.model.boundary.covers import united
 from cagepose.model.boundary.exact_surface import exact_block
 from cagepose.model.boundary.joined_surfaces import joined_surface, surface_groups
 from cagepose.model.boundary.packed import nothing, packed
+from cagepose.model.boundary.pieces_apart import boundary_apart
 from cagepose.model.boundary.turned_rows import circle_row, disc_row, side_row, tip_row
 from cagepose.model.boundary.union import union_of
 from cagepose.model.boundary.union_block import union_block
@@ -74,8 +77,30 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
             union_block(joined_surface([polyhedra.pop(number) for number in members], members, touch_m), group)
         )
     for group in united(polyhedra, holes, touch_m):
-        blocks.append(union_block(union_of([pieces[number] for number in sorted(group)], touch_m), group))
+        members = sorted(group)
+        if len(members) == 1:
+            part = polyhedra[members[0]]
+            blocks.append(_lone_block(_Placed((*part.form, *part.pose_body_shape.key), pieces[members[0]], members[0])))
+        else:
+            blocks.append(union_block(union_of([pieces[number] for number in members], touch_m), group))
     return packed([_with_holes(block, every, holes) for block in blocks], every, touch_m)
+
+
+@dataclass(frozen=True)
+class _Placed:
+    """A sharp polyhedron, its number, and its form and place, by which it is known again."""
+
+    key: tuple[object, ...]
+    piece: ConvexPiece = field(compare=False)
+    number: int
+
+
+@lru_cache(maxsize=64)
+def _lone_block(placed: _Placed) -> Block:
+    """Return the features of a polyhedron that is united with no other. Those of the last ones are remembered: what
+    changes from scene to scene of a study is few of its parts.
+    """
+    return union_block(boundary_apart([placed.piece]), frozenset((placed.number,)))
 
 
 def _with_holes(block: Block, parts: Sequence[Shape | FloatArray], holes: Sequence[Hole]) -> Block:
@@ -123,7 +148,7 @@ def _row(
 
 def _rows_of(part: Shape | FloatArray, number: int) -> list[Row]:
     if isinstance(part, np.ndarray):
-        return _hull_rows(hull_of(part[None]), Pose(), 0.0, number)
+        return [_row(VERTEX, number, part, NOWHERE, NOWHERE, 0.0, 0.0, [], np.inf, part[None])]
     if isinstance(part, Box):
         return _hull_rows(hull_of(part.corners_object()), Pose(), 0.0, number)
     if isinstance(part, Rounded):

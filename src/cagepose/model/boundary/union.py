@@ -18,9 +18,10 @@ from cagepose.kernels.union.pieces import Pieces, Plane, find_planes
 from cagepose.kernels.union.vertices import find_groups, merge_places, settle_vertices
 from cagepose.model.boundary.convex_pieces import ConvexPiece, packed
 from cagepose.model.boundary.corners import vertices_of
+from cagepose.model.boundary.pieces_apart import boundary_apart
 from cagepose.model.boundary.regions import faces_of
 from cagepose.model.boundary.trimmed import Edges, TrimmedUnion, joined
-from cagepose.model.checks import FloatArray, unit_rows
+from cagepose.model.checks import FloatArray
 from cagepose.model.near_pairs import near_pairs
 
 TILT_RAD = 1e-6
@@ -46,6 +47,8 @@ def union_of(pieces: Sequence[ConvexPiece], touch_m: float) -> TrimmedUnion:
         What is this close is at one place, above zero, metres: faces of different pieces whose corners are this close
         to one plane, at an angle of at most `TILT_RAD` to each other, are flush, and lie on the plane of the largest.
     """
+    if len(pieces) == 1:
+        return boundary_apart(pieces)
     every: Any = packed(pieces)
     groups = np.zeros(len(pieces), np.int64)
     find_groups(np.argsort(every.pieces["low"][:, 0]), touch_m, every, groups)
@@ -53,28 +56,10 @@ def union_of(pieces: Sequence[ConvexPiece], touch_m: float) -> TrimmedUnion:
     alone = set(firsts[sizes == 1].tolist())
     found = []
     if alone:
-        found.append(_of_apart([pieces[k] for k in sorted(alone)]))
+        found.append(boundary_apart([pieces[k] for k in sorted(alone)]))
     for first in firsts[sizes > 1].tolist():
         found.append(_of_group([pieces[k] for k in np.flatnonzero(groups == first).tolist()], touch_m))
     return joined(found)
-
-
-def _of_apart(pieces: Sequence[ConvexPiece]) -> TrimmedUnion:
-    """Return the boundary of pieces that are all apart: their own vertices, edges and faces."""
-    rows: Any = packed(pieces)
-    planes = np.zeros(len(rows.faces), dtype_of(Plane))
-    planes["normal"], planes["middle"] = rows.faces["normal"], rows.faces["middle"]
-    planes["offset"] = np.einsum("ij,ij->i", planes["normal"], planes["middle"])
-    rows.faces["plane"], rows.faces["side"] = np.arange(len(planes)), 1.0
-    arcs = np.zeros(len(rows.edges), dtype_of(Arc))
-    ends = np.stack([rows.edges["start"], rows.edges["end"]], axis=1)
-    arcs["kind"], arcs["start"], arcs["end"] = CONVEX, rows.vertices[ends[:, 0]], rows.vertices[ends[:, 1]]
-    arcs["direction"] = unit_rows(arcs["end"] - arcs["start"])
-    arcs["planes"] = np.stack([rows.edges["right"], rows.edges["left"]], axis=1)
-    arcs["normals"], arcs["sides"], arcs["is_border"] = planes["normal"][arcs["planes"]], 1.0, 1
-    arcs["inward"] = np.cross(arcs["normals"], arcs["direction"][:, None]) * np.array((-1.0, 1.0))[:, None]
-    arcs["parts"] = rows.pieces["part"][rows.faces["piece"][rows.edges["left"]]][:, None]
-    return _boundary(rows, planes, arcs, ends, np.arange(len(rows.vertices)), 0.0)
 
 
 def _of_group(pieces: Sequence[ConvexPiece], touch_m: float) -> TrimmedUnion:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.boundary.features import FACE, HALF_SPACE, LINE, SEGMENT, VERTEX, Bound, Feature
 from cagepose.model.boundary.blocks import Block, Row, block_of
+from cagepose.model.boundary.record_rows import one_behind_the_other
 from cagepose.model.boundary.trimmed import Edges, Faces, TrimmedUnion, Vertices
 from cagepose.model.checks import FloatArray, unit_rows
 
@@ -27,12 +28,12 @@ def union_block(union: TrimmedUnion, apart_from: frozenset[int]) -> Block:
     if len(union.faces.normals) > 0:
         blocks.append(_faces(union.faces))
     n_bounds = 0
-    for features, bounds, _ in blocks:
-        features["first_bound"] += n_bounds
-        features["last_bound"] += n_bounds
-        n_bounds += len(bounds)
-    features, bounds, boxes = (np.concatenate(rows) for rows in zip(*blocks, strict=True))
-    return Block(features, bounds, boxes, apart_from)
+    for own, of_own, _ in blocks:
+        own["first_bound"] += n_bounds
+        own["last_bound"] += n_bounds
+        n_bounds += len(of_own)
+    features, bounds, boxes = map(list, zip(*blocks, strict=True))
+    return Block(one_behind_the_other(features), one_behind_the_other(bounds), np.concatenate(boxes), apart_from)
 
 
 def with_rows(block: Block, rows: Sequence[Row]) -> Block:
@@ -42,7 +43,10 @@ def with_rows(block: Block, rows: Sequence[Row]) -> Block:
         return block
     for ends in ("first_bound", "last_bound"):
         more.features[ends] += len(block.bounds)
-    features, bounds = (np.concatenate(both) for both in ((block.features, more.features), (block.bounds, more.bounds)))
+    features, bounds = (
+        one_behind_the_other([block.features, more.features]),
+        one_behind_the_other([block.bounds, more.bounds]),
+    )
     return Block(features, bounds, np.concatenate([block.boxes, more.boxes]), block.apart_from)
 
 
