@@ -18,9 +18,9 @@ from cagepose.studies.touching import TouchFinder
 
 MOST_GAPS, ENOUGH = 2_000, 100
 """Gaps that there is memory for. Of a crowd, those beyond so many need not be found."""
-FIRST_REACH, FARTHEST, FARTHER = 1.0 / 4.0, 4.0, 4.0
-"""In sizes of the scene: how far the search looks at first, and at most. It looks so many times as far then, until it
-has found enough, or all of the cage; and so many times less far in a crowd."""
+FIRST_REACH, USUAL_REACH, FARTHEST, FARTHER = 1.0 / 64.0, 1.0 / 8.0, 4.0, 4.0
+"""In sizes of the scene: how far the search looks at first, how far it does in any case, and at most. It looks so many
+times as far then, until it has found enough, or all of the cage. The next pose is begun with as far as it took."""
 SAME_GAP = 4.0
 """In touch tolerances: gaps of two parts along one direction that differ by less are one, as between parallel faces."""
 SAME_WAY = 1e-6
@@ -72,6 +72,7 @@ class GapFinder:
     def __init__(self, scene: Scene) -> None:
         self._touches = TouchFinder(scene)
         self._scene, self._touch_m = scene, scene.geometry.touch_m
+        self._reach_m = FIRST_REACH * scene.size_m
         self._work: GapWork = empty_gap_work(MOST_GAPS)
         self._written = Slots(self._work)
         held, cage = scene.object, scene.cage
@@ -99,7 +100,7 @@ class GapFinder:
     def _open(self, pose: Pose, touching: set[int]) -> Gaps:
         """Return the gaps that are wider than what touches, as far as it takes to find all of the cage."""
         size_m, everything = self._scene.size_m, len(self._scene.cage.element_names)
-        reach_m, least_failed = FIRST_REACH * size_m, np.inf
+        reach_m, least_failed = self._reach_m, np.inf
         rows = self._rows(pose, reach_m)
         while rows is None and reach_m > self._touch_m:  # a crowd
             least_failed, reach_m = reach_m, reach_m / FARTHER
@@ -107,7 +108,7 @@ class GapFinder:
         rows = NO_GAPS if rows is None else rows
         while FARTHER * reach_m < least_failed and FARTHER * reach_m <= FARTHEST * size_m:
             is_known = len(touching | set(rows.elements.tolist())) == everything
-            if is_known or len(rows.elements) >= ENOUGH:
+            if len(rows.elements) >= ENOUGH or (is_known and reach_m >= USUAL_REACH * size_m):
                 break
             reach_m *= FARTHER
             farther = self._rows(pose, reach_m)
@@ -115,6 +116,7 @@ class GapFinder:
                 least_failed = reach_m
                 break
             rows = farther
+        self._reach_m = reach_m if len(rows.elements) < ENOUGH else max(reach_m / FARTHER, FIRST_REACH * size_m)
         if not len(rows.elements) and least_failed < np.inf:
             return self._rows(pose, FARTHEST * size_m, narrowest=True) or NO_GAPS
         return rows
