@@ -35,10 +35,12 @@ MEANING_WITHOUT_PROOF = (
 SEATED = (
     "how far a small push moves it each way, without friction; the push is 1/10000 of the load, which goes on acting"
 )
-HALVED = (
+COLUMNS_OF_LIMITS = ("end", "limited by", "sensitivity to less gap", "sensitivity to more gap", "to halve it")
+SENSITIVITY = (
     "sensitivity: by how much the play falls, or grows, for each {} by which one of these gaps is made smaller, or"
-    " larger; to halve it: by how much to make one of these gaps smaller, to first order"
+    " larger"
 )
+HALVED = "; to halve it: by how much to make one of these gaps smaller, to first order"
 MOST_MOTIONS = 6
 """So many motions of a way out are printed; the document has all."""
 STYLES = {"caged": "bold green", "not certified": "bold yellow", "escapes": "bold red"}
@@ -51,12 +53,17 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     width, words = screen_width(), LengthWords(unit, play.scene.size_m)
     tables = [_ranges(rows, words, digits) for digits in DIGITS_OF_RANGES]
     table = next((table for table in tables if fits(table, width)), tables[-1])
-    why = plain_table("end", "limited by", "sensitivity to less gap", "sensitivity to more gap", "to halve it")
-    for name, is_length, low, high in rows:
-        for sign, end in (("least", low), ("greatest", high)):
-            for number, (worth, points) in enumerate(_limits(end, is_length, unit).items()):
-                title = f"{sign} {name}" if number == 0 else ""
-                why.add_row(Text(title), Text(", ".join(points)), *(Text(cell) for cell in worth))
+    limits = [
+        (f"{sign} {name}" if number == 0 else "", ", ".join(points), *worth)
+        for name, is_length, low, high in rows
+        for sign, end in (("least", low), ("greatest", high))
+        for number, (worth, points) in enumerate(_limits(end, is_length, unit).items())
+    ]
+    can_halve = any(limit[-1] for limit in limits)
+    columns = COLUMNS_OF_LIMITS if can_halve else COLUMNS_OF_LIMITS[:-1]
+    why = plain_table(*columns)
+    for limit in limits:
+        why.add_row(*map(Text, limit[: len(columns)]))
     if play.cage is None:
         print_all(
             Text(f"{play.scene.name}: play from the rest of {play.seated}, in the cage's frame"), "", Text(SEATED)
@@ -67,7 +74,7 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     is_proven = any(end.certified is not None for _, _, low, high in rows for end in (low, high))
     print_all("", table, "", *_legend(play, words), Text(MEANING if is_proven else MEANING_WITHOUT_PROOF), "")
     if why.row_count:
-        print_all(why, "", Text(HALVED.format(unit)), "")
+        print_all(why, "", Text(SENSITIVITY.format(unit) + (HALVED if can_halve else "")), "")
     for rest in rests:
         print_all(_rest(rest, words))
     asked = {rest.phase for rest in rests}

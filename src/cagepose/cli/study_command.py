@@ -128,6 +128,7 @@ def _write_csv(results: StudyResults, path: str) -> int:
 
 def _reported(results: StudyResults, workers: int, *, is_shown: bool) -> tuple[dict[str, Any], list[Path]]:
     """Return what a study says, and the files of a report; one that is only shown and has its report gets no other."""
+    from cagepose.files.progress import tell
     from cagepose.sampling.findings import document, findings_of
     from cagepose.sampling.report import kept_numbers, write_report
 
@@ -135,7 +136,10 @@ def _reported(results: StudyResults, workers: int, *, is_shown: bool) -> tuple[d
     if numbers is not None:
         return numbers, []
     findings = findings_of(results, workers)
-    return document(findings), write_report(findings)
+    tell("cagepose: the report: its pictures, and the runs that it plays")
+    written = write_report(findings)
+    tell("")
+    return document(findings), written
 
 
 def _progress() -> Progress:
