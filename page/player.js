@@ -10,6 +10,7 @@ import { Gaps } from "./gaps.js";
 import { Hand } from "./hand.js";
 import { Panel } from "./panel.js";
 import { Plot } from "./plot.js";
+import { Questions } from "./questions.js";
 import { Stage } from "./stage.js";
 import { $, digits, element } from "./words.js";
 
@@ -27,6 +28,7 @@ let exaggerations = data.phases.map((phase) => phase.proposed); // of each phase
 let drawing = null, waiting = false, isShown = true, isAhead = false, resting = 0, lastTick = null;
 let panel = null, carries = false; // the object's start, which follows the pointer
 let hand = null; // what pulls at the object
+let questions = null;
 const asker = new Asker();
 let shownAt = -Infinity;
 let told = null; // on what that depends which stands around the picture now
@@ -152,6 +154,7 @@ function showRun(answer, itsExaggerations, greatestForces) {
   gaps.take(data, stage);
   drawing?.take(stage, exaggerations, greatestForces);
   card.pick(null);
+  questions?.forget();
   player.answers += 1;
   fill();
   pause();
@@ -404,6 +407,7 @@ if (drawing) $("names").checked = drawing.allNames;
 if (!data.points.length) $("points").parentElement.hidden = true;
 if (data.controls) panel = new Panel(data.controls, data.fileName, data.text, asker, replaceRun);
 if (panel && drawing) hand = new Hand(asker, data.grips, { scene: () => panel.question(), show: showLed, restart: () => panel.ask(), refuse: (why) => asker.complain([why], "answer") });
+if (panel) questions = new Questions(data.questions, asker, { scene: () => panel.question(), phase });
 if (data.edit) window.cageposeEditor({ ...data.edit, beside: data.beside }, panel, () => { refresh(); drawing?.fit(); });
 $("pull").parentElement.hidden = !hand;
 if (hand) $("scene").addEventListener("pointermove", hover);

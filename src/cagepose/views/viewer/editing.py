@@ -18,6 +18,7 @@ from cagepose.files.scene_edit import edited
 from cagepose.files.scene_file import SceneText, read_scene_text, scene_text_of
 from cagepose.files.schema import scene_json_schema
 from cagepose.files.write import write_whole
+from cagepose.views.viewer.questions import QUESTIONS
 from cagepose.views.viewer.vary import runs_with
 from cagepose.views.viewer.what_if import WhatIf
 
@@ -76,7 +77,11 @@ class Desk:
         self._saved, self._start = saved.text, edited(saved, changes).text
         self._asked({})
         self._writing = Lock()
-        self.answers: dict[str, Callable[[Question], dict[str, Any]]] = {"/run": self._run, "/pull": self._pull}
+        self.answers: dict[str, Callable[[Question], dict[str, Any]]] = {
+            "/run": self._run,
+            "/pull": self._pull,
+            "/ask": self._ask,
+        }
         if can_edit:
             self.answers |= {"/file": self._file, "/save": self._save, "/save-as": self._save_as, "/vary": self._vary}
 
@@ -86,6 +91,7 @@ class Desk:
             **self._told(self._asked({})),
             "fileName": f"{self._path.stem}-changed.yaml",
             "text": _with_plain_ends(self._start),
+            "questions": {name: question.words for name, question in QUESTIONS.items()},
         }
         if not self._can_edit:
             return content
@@ -116,6 +122,9 @@ class Desk:
 
     def _pull(self, asked: Question) -> dict[str, Any]:
         return self._asked(asked).what_if.pulled(asked.get("values", {}), asked.get("pull"))
+
+    def _ask(self, asked: Question) -> dict[str, Any]:
+        return self._asked(asked).what_if.told(asked.get("values", {}), asked.get("question"), asked.get("phase"))
 
     def _vary(self, asked: Question) -> dict[str, Any]:
         return runs_with(self._asked(asked).what_if.scene_text, asked.get("key"), asked.get("numbers"))

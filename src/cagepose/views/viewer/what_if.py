@@ -24,6 +24,7 @@ from cagepose.views.viewer.controls import Control, controls
 from cagepose.views.viewer.hand import grip_of, grips, pulled
 from cagepose.views.viewer.page_data import page_data
 from cagepose.views.viewer.playback import Playback, playback
+from cagepose.views.viewer.questions import answered
 from cagepose.views.viewer.stage import Stage
 
 START = "start"
@@ -96,6 +97,17 @@ class WhatIf:
         """
         shown, stage, _ = self._ran(json.dumps(values, sort_keys=True))
         return pulled(shown, stage, grip_of(pull, shown.run, shown.length_unit))
+
+    def told(self, values: object, question: object, phase: object) -> dict[str, Any]:
+        """Return the answer to a question about a phase of the scene with ``values``, see `answered`.
+
+        Raises
+        ------
+        SceneFileError, ValueError
+            As `answer`; or that cannot be asked.
+        """
+        shown, _, _ = self._ran(json.dumps(values, sort_keys=True))
+        return answered(shown.run, question, phase, shown.length_unit)
 
     def _run(self, values: str) -> _Ran:
         changes = self._changes(json.loads(values))

@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources 0f525cbfab28e2e451fa9998b14502792bfda6158a8d0e2d4d51806cd120d751).
+// Built by `make page` from page/ (sources 942de1565ade986b9686f509f45e0278c935665f961173ba01ee541700265cd1).
 /*! Contains parts of @codemirror/autocomplete, @codemirror/commands, @codemirror/language, @codemirror/lint, @codemirror/state, @codemirror/streamparser, @codemirror/view:
 MIT License
 
