@@ -296,7 +296,7 @@ def test_what_cannot_be_varied_is_refused(server: ViewServer, key: str, numbers:
 
 def test_where_the_network_may_look_no_text_is_taken_and_no_file_written(scene: Path) -> None:
     desk = Desk(scene, can_edit=False)
-    assert set(desk.answers) == {"/run", "/pull"}
+    assert set(desk.answers) == {"/run", "/pull", "/ask"}
     assert "edit" not in desk.page_content()
     with pytest.raises(ValueError, match="the text cannot be changed from here"):
         desk.answers["/run"]({"text": TEXT})

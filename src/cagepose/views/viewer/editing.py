@@ -142,7 +142,7 @@ class Desk:
         return scene_text_of(text, self._source)
 
     def _made(self, text: str, _stamp: str) -> WhatIf:
-        return WhatIf(self._scene_text_of(text))
+        return WhatIf(self._read(text))  # anew, as it keeps what it was built of, and files beside are other ones
 
     def _file(self, asked: Question) -> dict[str, Any]:
         """The file as it is now, its text only where the page knows another version; and whether the files that its
