@@ -13,6 +13,7 @@ from cagepose.model.load import Load
 from cagepose.model.remarks import remarks
 from cagepose.model.scene import Scene
 from cagepose.runs.actions import actions_of
+from cagepose.runs.driven import DriveRun
 from cagepose.runs.drives import drives_of
 from cagepose.runs.run import PhaseRun
 from cagepose.runs.warnings_of_runs import (
@@ -30,6 +31,8 @@ STEP_LIMIT = 3000
 """Steps in a phase after which a run is named "limit"."""
 
 
+NEAR_THE_END = 0.01
+"""Share of what is done of a drive."""
 FAILURE_REMEDY = (
     "change the friction coefficient by a hundredth, or move a point or the start by a millionth of the size"
 )
@@ -74,6 +77,14 @@ def _edge_motion_warnings(phase: PhaseRun) -> Iterator[str]:
             return
 
 
+def _may_jam_there(drive: DriveRun | None) -> bool:
+    """Whether a drive could jam where it ended, and took its greatest force as it came there."""
+    if drive is None or not drive.jam_possible:
+        return False
+    came_there = (1.0 - NEAR_THE_END) * drive.share
+    return drive.jam_possible[-1][1] >= drive.share and drive.greatest_share >= came_there > 0.0
+
+
 def _failure_warnings(phase: PhaseRun, load: Load) -> Iterator[str]:
     """Why a phase failed, with which contacts, and what to change."""
     has_potential = not load.moments and all(push.has_potential for push in load.pushes)
@@ -85,6 +96,13 @@ def _failure_warnings(phase: PhaseRun, load: Load) -> Iterator[str]:
         )
     elif phase.verdict == "limit":
         yield f"{phase.name}: it still moved after {STEP_LIMIT} steps, touching {touching}; {FAILURE_REMEDY}"
+    elif phase.verdict == "stalled" and _may_jam_there(phase.drive):
+        assert phase.drive is not None
+        yield (
+            f"{phase.name}: it probably jams here, at {100.0 * phase.drive.share:.4g} % of the drive, which was not"
+            f" shown: no step goes on, the drive force is greatest there, and forces of {touching} could stand against"
+            " it and grow without bound"
+        )
     elif phase.verdict == "stalled" and phase.events and phase.events[-1].rule == RULE_NAMES[STUCK]:
         yield (
             f"{phase.name}: touching {touching}, no motion that obeys Coulomb's law was found, nor a rest"
