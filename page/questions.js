@@ -10,10 +10,16 @@ export class Questions {
     $("questions").hidden = false;
   }
 
-  ask(question) {
-    const asked = { ...this.scene(), question, phase: this.phase() };
+  // What waits to be run comes first: the question is about what is shown then.
+  async ask(question) {
     this.tell([["", "asking \u2026"]], []);
-    this.asker.ask("ask", () => asked, ({ lines, table }) => this.tell(lines, table), (refusal) => { this.forget(); return refusal.problems; });
+    await this.asker.settled();
+    const asked = { ...this.scene(), question, phase: this.phase() };
+    await this.asker.ask("ask", () => asked, ({ lines, table }) => this.tell(lines, table), ({ problems }) => {
+      this.tell([["no answer", problems.join(" ")]], []);
+      return [];
+    });
+    if ($("answer").textContent.startsWith("asking")) this.forget(); // the server is lost
   }
 
   // Another run is shown, which the answer is not about.

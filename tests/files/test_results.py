@@ -66,6 +66,12 @@ def test_keys_are_names_without_frame_and_unit_and_numbers_in_the_scenes_unit() 
     assert "-0.0" not in json.dumps(told, allow_nan=False)
 
 
+def test_numbers_that_json_has_not_are_null_or_a_word() -> None:
+    part = Part(np.array([1.0, math.inf, math.nan]), math.nan)
+    assert plain_data(part, "m") == {"at": [1.0, "unbounded", None], "turn_deg": None}
+    assert plain_data(Part(np.zeros(3), np.float64(math.pi)), "m")["turn_deg"] == pytest.approx(180.0)  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize("name", ["dock", "gripper"])
 def test_each_field_of_a_result_is_in_the_document_of_its_run(name: str) -> None:
     path = next(path for path in SCENES if path.stem == name)

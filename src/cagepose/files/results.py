@@ -21,8 +21,10 @@ from cagepose.runs.run import Motion
 
 KEYS = {"place_world": "at", "equally_stiff_n": "equally_stiff_normal"}
 """The fields whose key is another one."""
-LENGTHS, NUMBERS = ("_m", "_nm", "_j"), ("_n", "_s")
-"""Units, at the end of a name: of what is told in the scene's unit of length, and of what stays as it is."""
+PER_LENGTH, LENGTHS, NUMBERS = "_n_per_m", ("_m", "_nm", "_j"), ("_n", "_s")
+"""Units, at the end of a name: of what is told for each of the scene's units of length, in these, and of what stays as
+it is.
+"""
 INFINITE = {"critical_friction": "none", "balance": "none", "distance_m": None}
 """What stands for an infinite number, which JSON has not, in some fields; in all others, `UNBOUNDED`."""
 UNBOUNDED = "unbounded"
@@ -71,6 +73,8 @@ def _item(name: str, value: Any, unit: LengthUnit) -> tuple[str, Any]:
     infinite = INFINITE.get(name, UNBOUNDED)
     if name in PLACES:
         return key, _plain(value, unit, lambda lengths: from_metres(lengths, unit), infinite)
+    if key.endswith(PER_LENGTH):
+        return key.removesuffix(PER_LENGTH), _plain(value, unit, lambda each: each / from_metres(1.0, unit), infinite)
     for ending in LENGTHS:
         if key.endswith(ending):
             return key.removesuffix(ending), _plain(value, unit, lambda lengths: from_metres(lengths, unit), infinite)
@@ -82,11 +86,15 @@ def _item(name: str, value: Any, unit: LengthUnit) -> tuple[str, Any]:
 
 
 def _plain(value: Any, unit: LengthUnit, convert: Convert, infinite: str | None) -> Any:
+    if isinstance(value, np.generic):
+        value = value.item()
     if value is None or isinstance(value, (str, bool, int)):
         return value
     if isinstance(value, float):
-        return float(convert(value)) + 0.0 if math.isfinite(value) else infinite  # -0.0 becomes 0.0
-    if isinstance(value, np.ndarray):
+        if math.isfinite(value):
+            return float(convert(value)) + 0.0  # -0.0 becomes 0.0
+        return None if math.isnan(value) else infinite
+    if isinstance(value, np.ndarray) and np.isfinite(value).all():
         return (convert(value) + 0.0).tolist()
     if isinstance(value, Mapping):
         return {key: _plain(item, unit, convert, infinite) for key, item in value.items()}

@@ -178,9 +178,10 @@ class SceneText:
 
     def _with_numbers(self, values: Mapping[KeyPath, object]) -> SceneFile | None:
         """Return the scene with other values, of the parts of one that was built before; None: build it as a whole."""
-        if not self._begun or not self._begun[0].paths <= values.keys():
+        held = tuple(self._begun)  # once: another window may put another one there
+        if not held or not held[0].paths <= values.keys():
             return None
-        begun, known = self._begun[0], self._expressions
+        begun, known = held[0], self._expressions
         numbers = {path: float(value) for path, value in values.items() if is_number(value)}
         if len(numbers) < len(values) or any(path in known.by_path for path in numbers):
             return None

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from cagepose.model.checks import FloatArray, expect, expect_choice, expect_count
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
+from cagepose.questions.ends import moved_before
 from cagepose.questions.unanswered import Unanswered
 from cagepose.runs.cases import greatest_friction
 from cagepose.runs.many import run_many
@@ -136,9 +137,12 @@ def cage_rests(
     names = [load.name for load in scene.loads]
     if phase is not None:
         expect_choice(phase, names, "phase")
-    load = scene.loads[0 if phase is None else names.index(phase)]
+    number = 0 if phase is None else names.index(phase)
+    load = scene.loads[number]
     if load.drive or load.press:
         return Unanswered(f"{load.name} drives or presses, so that the cage is not the same at the end")
+    if moved := moved_before(scene, number):
+        return moved
     alone = scene.but_for(loads=[load])
     found = play(alone, search_s=0.0).freedoms
     limits = [(found[name].low.reached, found[name].high.reached) for name in FREEDOMS]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cagepose.model.checks import expect, expect_choice
+from cagepose.model.scene import Scene
 from cagepose.questions.unanswered import Unanswered
 from cagepose.runs.run import AT_REST, STOPPED, Run
 
@@ -21,6 +22,16 @@ def phase_asked(run: Run, phase: str | None) -> int:
         return len(names) - 1
     expect_choice(phase, names, "phase")
     return names.index(phase)
+
+
+def moved_before(scene: Scene, phase: int) -> Unanswered | None:
+    """Return why a question about the cage as it stands in the scene has no answer in a phase; None: it may have."""
+    for load in scene.loads[:phase]:
+        if load.drive or load.press:
+            return Unanswered(
+                f"{load.name} has moved bodies of the cage before, and the search knows the cage of the scene alone"
+            )
+    return None
 
 
 def not_in_contact(run: Run, phase: int) -> Unanswered | None:

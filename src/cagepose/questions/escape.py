@@ -17,7 +17,7 @@ from cagepose.kernels.play.escape import LENGTH_OF_WAY_OUT, N_RANDOM, Station, g
 from cagepose.model.checks import FloatArray, expect, expect_count
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.questions.ends import phase_asked
+from cagepose.questions.ends import moved_before, phase_asked
 from cagepose.questions.unanswered import Unanswered
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import AT_REST, Motion, Run
@@ -104,6 +104,8 @@ def escape_energy(
         return Unanswered(f"nothing is at rest at the end of {ended.name}: it ends as {ended.verdict!r}")
     if load.moments or load.springs or load.drive or load.press or not all(push.has_potential for push in load.pushes):
         return Unanswered(f"{load.name} is more than weight and forces that keep their direction, so it has no energy")
+    if moved := moved_before(scene, number):
+        return moved
     weighed = scaled_load(scene, load)
     if play(scene, search_s=0.0).verdict == "caged":
         return EscapeEnergy(load.name, math.inf, math.inf, weighed.in_newtons, (), None, 0, 0)

@@ -93,6 +93,8 @@ def _last(holds: Callable[[float], bool], first: float, last: float) -> float | 
     """Return the last value, by halving, at which something holds that holds at the first; None: not even there."""
     if not holds(first):
         return None
+    if holds(last):
+        return last
     known, beyond = first, last
     for _ in range(N_HALVINGS):
         middle = 0.5 * (known + beyond)

@@ -94,6 +94,8 @@ def jam(run: Run, phase: str | None = None) -> Jam | Unanswered:
         poses, least = push_jam_friction(run, number)
         stopped = least == 0.0
     is_open = np.isnan(least)
+    if is_open.all():
+        return Unanswered("at no place of the way could it be asked: too much touches, or the forces cancel each other")
     counts = np.where(is_open | stopped, np.inf, least)
     place = int(counts.argmin())
     is_found = bool(np.isfinite(counts[place]))

@@ -24,11 +24,14 @@ from cagepose.studies.balances import choices_of
 from cagepose.studies.contact_cones import contact_cones
 from cagepose.studies.could_jam import JamQuestion, least_of_choices
 
+CANCELLED = 1e-12
+"""Of the sum of the forces' sizes: forces that come to less together cancel each other."""
+
 
 def push_jam_friction(run: Run, phase: int) -> tuple[list[Pose], FloatArray]:
     """Return the poses along the way of a phase, and the least coefficient of friction with which the push could be
     held there however great it is, (n,); 0: without friction; inf: none up to 10; nan: faces take turns at edges in
-    more ways than is asked.
+    more ways than is asked, or the forces cancel each other.
 
     It is the greatest coefficient of all contacts; the others keep their proportion to it. Contacts are those that
     touch at each pose; bodies of the cage stand where the phase has left them.
@@ -55,7 +58,11 @@ def push_jam_friction(run: Run, phase: int) -> tuple[list[Pose], FloatArray]:
         cones = contact_cones(normals, places - center, np.array(coefficients))
         push = _push(run, phase, pose)
         growth = np.append(push[:3], push[3:] / cones.length_m)
-        growth /= np.linalg.norm(growth)
+        size = float(np.linalg.norm(growth))
+        if size <= CANCELLED * sum(one.magnitude_n or 1.0 for one in run.scene.loads[phase].pushes):
+            found.append(math.nan)
+            continue
+        growth /= size
         questions = (
             JamQuestion(cones.columns[chosen], np.zeros((len(chosen), 3)), cones.friction[chosen], growth, 1.0)
             for chosen in map(list, choices)

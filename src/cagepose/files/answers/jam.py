@@ -13,19 +13,20 @@ def lines(answer: Jam, words: LengthWords) -> list[tuple[str, str]]:
     """Return names and texts."""
     what = "driven" if answer.is_driven else "pushed"
     told = [("phase", f"{answer.phase}: {answer.verdict}")]
+    where = " where it could be asked" if answer.n_open else ""
     if math.isinf(answer.friction):
-        told.append(("jam", f"at no friction up to 10, however hard it is {what}"))
+        told.append(("jam", f"at no friction up to 10{where}, however hard it is {what}"))
     else:
         least = f"{answer.friction:.5g} on"
         if answer.has_several and answer.present > 0.0:
             least += f" (the greatest coefficient; {answer.friction / answer.present:.5g} times each)"
-        told.append(("jam", f"from {least} it can jam, however hard it is {what}; below it cannot"))
+        told.append(("jam", f"from {least} it can jam, however hard it is {what}; below it cannot{where}"))
     if answer.pose_world_object is not None:
         share = "" if answer.share is None else f", after {short(100.0 * answer.share, 4, 1e-10)} % of the drive"
         told.append(("", f"first with the object at ({words.lengths(answer.pose_world_object.position_m)}){share}"))
-    can = "can jam" if answer.present >= answer.friction else "cannot jam"
+    can = "can jam" if answer.present >= answer.friction else f"cannot jam{where}"
     told.append(("here", f"with {short(answer.present, 6, 1e-12)} it {can}"))
     asked = f"at {number_of(answer.n_asked, 'place')} of the way"
     stopped = f"; at {answer.n_stopped} of them contacts stop it without friction" if answer.n_stopped else ""
-    is_open = f"; at {answer.n_open} of them too much touches" if answer.n_open else ""
+    is_open = f"; at {answer.n_open} of them it could not be asked" if answer.n_open else ""
     return [*told, ("asked", f"{asked}{stopped}{is_open}")]

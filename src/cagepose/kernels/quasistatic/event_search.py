@@ -34,6 +34,8 @@ SLANTED, NEAR_END = 8.0, 0.01
 """Times what contacts stray, that an event may be off along the way; and, in touch tolerances, how near to it the end
 of a contact is looked for.
 """
+LATE = 4.0
+"""In what an event may be off along the way. What is reached later is not what comes first."""
 CLOSER = 0.1
 """Of two numbers one after the other. Where the second one is less than so much of the first, a straight line through
 both is followed.
@@ -129,7 +131,9 @@ def first_past(
 
 @kernel
 def hit_on_path(setting: Setting, path: Path, hit: Hit, spread: float, work: QuasistaticWorkspace) -> Hit:
-    """Return what is hit, after the amount of the path where it is reached; or as it was, where it is not or was.
+    """Return what is hit, after the amount of the path where it is reached; or as it was, where it is not or was. Where
+    it is reached much later, something else may come first: the path goes to where it seemed to be hit, and is asked
+    again.
 
     A gap that is closed by the projection afterwards would turn an object aside that reaches two things at once.
     """
@@ -138,7 +142,11 @@ def hit_on_path(setting: Setting, path: Path, hit: Hit, spread: float, work: Qua
         return hit
     guard, enough = Guard(GAP_CLOSES, hit, -1, 0.0), (ON_FACE * setting.size_m, 0.0)
     amount = first_past(setting, path, guard, begun, hit.amount, spread, enough, work)
-    return hit if amount == math.inf else Hit(amount, hit.feature, hit.cage_feature, hit.angle)
+    if amount == math.inf:
+        return hit
+    if amount > hit.amount + LATE * spread:
+        return Hit(hit.amount, -1, -1, 0.0)
+    return Hit(amount, hit.feature, hit.cage_feature, hit.angle)
 
 
 @kernel
@@ -232,12 +240,12 @@ def furthest_step(setting: Setting, path: Path, work: QuasistaticWorkspace) -> t
         passed = NO_HIT
         if done and is_curved and amount < twist.end:
             passed = passed_before(setting, path, amount, end, turned, reach_m, work)
+        if done and passed.feature < 0:
+            place_object(setting.geometry, end, turned, placement)
+            return amount, as_planned and amount > 0.0, end, turned
         if passed.feature >= 0:
             hit = hit_on_path(setting, path, passed, spread, work)
-        if done and not hit.amount < amount:
-            place_object(setting.geometry, end, turned, placement)
-            return amount, as_planned, end, turned
-        if passed.feature >= 0:
+        if passed.feature >= 0 and hit.amount < amount:
             amount = hit.amount
         else:
             amount, hit, as_planned = 0.5 * amount, NO_HIT, False

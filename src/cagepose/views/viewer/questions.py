@@ -42,7 +42,7 @@ class Question:
 
 
 def _resting(run: Run, phase: str) -> tuple[Any, Any]:
-    if is_on_floor_alone(run.scene):
+    if phase == run.scene.loads[0].name and is_on_floor_alone(run.scene):
         return resting_poses(run.scene.object), of_resting
     return cage_rests(run.scene, phase, n_starts=N_STARTS), of_cage
 

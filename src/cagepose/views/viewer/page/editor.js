@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources 942de1565ade986b9686f509f45e0278c935665f961173ba01ee541700265cd1).
+// Built by `make page` from page/ (sources 85ce01572f04d4dcdb156fb9fbc8ffa2e0f9db8fa7d2f30e57c57d10be170574).
 /*! Contains parts of @codemirror/autocomplete, @codemirror/commands, @codemirror/language, @codemirror/lint, @codemirror/state, @codemirror/streamparser, @codemirror/view:
 MIT License
 
