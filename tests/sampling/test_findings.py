@@ -27,7 +27,8 @@ from cagepose.sampling.findings import findings_of
 from cagepose.sampling.outcome import Outcomes
 from cagepose.sampling.runner import Runner
 from cagepose.sampling.sensitivity import _indices, saltelli_rows
-from cagepose.sampling.statistics import Spread, statistics_of, wilson
+from cagepose.sampling.statistics import Spread, statistics_of
+from cagepose.studies.likelihood import wilson
 from our_studies import PEG, RunStudy
 
 RISES = {"cage.pose.position[2]": {"uniform": [-0.1, 0.1]}}

@@ -9,6 +9,7 @@ import re
 from cagepose.files.key_path import Path
 from cagepose.files.schema_shapes import KINDS
 from cagepose.files.units import LENGTH_UNITS
+from cagepose.model.checks import is_number
 
 DOWN = {"-z": [0, 0, -1], "z": [0, 0, 1], "+z": [0, 0, 1], "down": [0, 0, -1], "-y": [0, -1, 0], "-x": [-1, 0, 0]}
 """Words for a direction of gravity."""
@@ -62,11 +63,11 @@ def meant_by_value(path: Path, value: object) -> str | None:
         return _unit(value, "units: {{length: {}}}")
     if path == ("units", "length") and isinstance(value, str):
         return _unit(value, "{}")
-    if path == ("friction",) and _is_number(value):
+    if path == ("friction",) and is_number(value):
         return f"write friction: {{coefficient: {value}}}"
     if key == "gravity" and not isinstance(value, list):
         return _gravity(value)
-    if key == "stop_at" and _is_number(value):
+    if key == "stop_at" and is_number(value):
         return f"write stop_at: {{force: {value}}}, or {{moment: {value}}} of turns"
     if key in ("force", "moment") and path[-2:-1] != ("stop_at",) and _is_vector(value):
         at = ", at: [0, 0, 0]" if key == "force" else ""
@@ -76,9 +77,9 @@ def meant_by_value(path: Path, value: object) -> str | None:
         return f"write in: [{value}]"
     if key == "pose" and _is_vector(value):
         return f"write pose: {{position: {json.dumps(value)}}}"
-    if key == "size" and _is_number(value):
+    if key == "size" and is_number(value):
         return f"write the three edge lengths: size: [{value}, {value}, {value}]"
-    if path[:1] == ("cage",) and path[-2:-1] == ("points",) and isinstance(key, int) and _is_number(value):
+    if path[:1] == ("cage",) and path[-2:-1] == ("points",) and isinstance(key, int) and is_number(value):
         return "put each point into brackets of its own: points: [[4, 4, 0], [-4, 4, 0]]"
     return None
 
@@ -120,13 +121,9 @@ def _gravity(value: object) -> str:
     if isinstance(value, str) and value.lower() in DOWN:
         found: list[float] = [*DOWN[value.lower()]]
     else:
-        found = [0, 0, -abs(value)] if _is_number(value) and isinstance(value, int | float) and value else [0, 0, -1]
+        found = [0, 0, -abs(value)] if is_number(value) and value else [0, 0, -1]
     return f"write it as a vector: gravity: {json.dumps(found)}"
 
 
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
 def _is_vector(value: object) -> bool:
-    return isinstance(value, list) and len(value) == 3 and all(map(_is_number, value)) and any(value)
+    return isinstance(value, list) and len(value) == 3 and all(map(is_number, value)) and any(value)

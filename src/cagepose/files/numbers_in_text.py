@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from cagepose.files.key_path import Path, resolved, value_at
 from cagepose.files.yaml_source import YamlSource, scalar_value
+from cagepose.model.checks import is_number
 
 _END_OF_LINE = re.compile("\r\n|[\r\n]")
 """Where the YAML parser counts a new line."""
@@ -51,14 +52,10 @@ def _words(text: str, starts: list[int], yaml: YamlSource, path: Path, value: ob
         for key in keys:
             yield from _words(text, starts, yaml, (*path, key), value_at(value, (key,)))
         return
-    if not (_is_number(value) and _is_number(there)) or path not in yaml.values:
+    if not (is_number(value) and is_number(there)) or path not in yaml.values:
         raise _NotInPlace
     line, column = yaml.values[path]
     found = _WORD.match(text, starts[line - 1] + column - 1)
     if found is None or scalar_value(found[0]) != there:
         raise _NotInPlace
     yield _Written(found.start(), found.end(), found[0] if value == there else repr(value).removesuffix(".0"))
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from cagepose.errors import Problem, SceneError
 from cagepose.files.key_path import Path, set_value, value_at
+from cagepose.model.checks import is_number
 
 if TYPE_CHECKING:
     from cagepose.files.expression import Expression
@@ -65,7 +66,7 @@ class Expressions:
                     found[path] = names[name] = _number(self.by_path[path], names)
                 except ValueError as error:
                     raise SceneError([Problem(path, str(error))]) from None
-            elif _is_number(given):
+            elif is_number(given):
                 names[name] = float(given)
             else:
                 raise SceneError([])  # no number: the schema says so
@@ -114,11 +115,7 @@ def evaluated(data: Any, parsed: Expressions | None = None) -> tuple[object, lis
 
 def _numbers(parameters: Any) -> dict[str, float]:
     given = parameters.items() if isinstance(parameters, dict) else ()
-    return {name: float(value) for name, value in given if _is_number(value)}
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
+    return {name: float(value) for name, value in given if is_number(value)}
 
 
 def expression_at(data: object, path: Path) -> str | None:

@@ -21,12 +21,13 @@ from cagepose.files.messages import Finding, schema_findings, shown
 from cagepose.files.parameters import Expressions, evaluated, expression_at
 from cagepose.files.points_file import POINTS_KEY, PointsTable, read_points
 from cagepose.files.read import read_text, starts_as_run
-from cagepose.files.scene_parts import OtherScene, SceneParts, is_number, is_parameter
+from cagepose.files.scene_parts import OtherScene, SceneParts, is_parameter
 from cagepose.files.schema import SceneModel
 from cagepose.files.schema_cage import PointsFileModel
 from cagepose.files.sound_parts import problems_beside
 from cagepose.files.units import LengthUnit
 from cagepose.files.yaml_source import MAX_DEPTH, YamlSource, parse_yaml
+from cagepose.model.checks import is_number
 from cagepose.model.scene import Scene
 
 

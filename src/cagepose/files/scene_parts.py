@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from copy import deepcopy
 from pathlib import Path
-from typing import Any, TypeGuard
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -20,7 +20,7 @@ from cagepose.files.schema_shapes import ShapeModel
 from cagepose.files.units import LengthUnit, to_metres
 from cagepose.model.cage import Cage
 from cagepose.model.cage_body import CageBody
-from cagepose.model.checks import FloatArray
+from cagepose.model.checks import FloatArray, is_number
 from cagepose.model.parts import Object
 from cagepose.model.scene import Scene
 from cagepose.model.scope import unknown_shapes
@@ -190,8 +190,3 @@ class SceneParts:
 def is_parameter(path: KeyPath) -> bool:
     """Whether a path leads to a parameter."""
     return path[:1] == ("parameters",) and len(path) == 2
-
-
-def is_number(value: object) -> TypeGuard[float]:
-    """Whether a value of a file is a number."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool)

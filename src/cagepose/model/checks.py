@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -48,6 +48,11 @@ def finite_array(value: ArrayLike, shape: tuple[int, ...], key: str) -> FloatArr
 
 def _numbers(shape: tuple[int, ...]) -> str:
     return f"{' x '.join('n' if n == -1 else str(n) for n in shape)} numbers"
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Return whether a value is a number, finite or not: no truth value."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def is_finite(value: object) -> bool:

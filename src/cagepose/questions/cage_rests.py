@@ -21,6 +21,7 @@ from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST
 from cagepose.runs.solve import run
 from cagepose.runs.variation import Variation
+from cagepose.studies.likelihood import wilson
 from cagepose.studies.play import play
 from cagepose.studies.play_frame import FREEDOMS, N_LENGTHS
 
@@ -32,8 +33,6 @@ OPEN_WAY, OPEN_ANGLE = 0.25, math.pi / 4.0
 """How far starts are from the scene's own where the cage sets no limit: of the scene's size, and radians."""
 SAME_POSE = 1e-3
 """Ends that are this near are one: of the scene's size, and radians."""
-CONFIDENCE = 1.959963984540054
-"""Of 95 %, in standard deviations."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -267,15 +266,3 @@ class _End(NamedTuple):
     pose: Pose
     touching: tuple[str, ...]
     undetermined: tuple[str, ...]
-
-
-def wilson(n_in: int, n: int) -> tuple[float, float]:
-    """Return the interval in which a likelihood lies, with 95 % confidence, of which ``n_in`` of ``n`` came true.
-
-    >>> [round(limit, 4) for limit in wilson(0, 100)]
-    [0.0, 0.037]
-    """
-    share, square = n_in / n, CONFIDENCE**2 / n
-    middle = (share + square / 2.0) / (1.0 + square)
-    half = math.sqrt(share * (1.0 - share) * square + square**2 / 4.0) / (1.0 + square)
-    return max(middle - half, 0.0), min(middle + half, 1.0)

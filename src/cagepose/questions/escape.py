@@ -9,11 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cagepose.kernels.algebra.pose import moved_pose
-from cagepose.kernels.algebra.record import Rows, empty_rows
-from cagepose.kernels.algebra.tolerances import kernel_tolerances
 from cagepose.kernels.algebra.vector import vector_from
-from cagepose.kernels.collision.boxes import empty_placed_boxes
-from cagepose.kernels.play.escape import LENGTH_OF_WAY_OUT, N_RANDOM, Station, grow_tree
+from cagepose.kernels.play.escape import LENGTH_OF_WAY_OUT
 from cagepose.model.checks import FloatArray, expect, expect_count
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -22,13 +19,13 @@ from cagepose.questions.unanswered import Unanswered
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import AT_REST, Motion, Run
 from cagepose.studies.cage_verdict import PathStep, step_to
+from cagepose.studies.free_motions import FreeMotions
 from cagepose.studies.play import play
 from cagepose.studies.play_frame import PlayFrame
 
 N_MOTIONS = 20_000
 MOST_STATIONS = 20_000
 MOTIONS_OF_BATCH = 100
-RANDOM_SEED = 20250101
 LEVEL = 1e-9
 """Of the load. A way out against which no more of it acts goes level."""
 LOWER = 1e-3
@@ -169,12 +166,8 @@ class _Search:
 
     def __init__(self, scene: Scene, work: _Work) -> None:
         self._frame, self._work = PlayFrame(scene), work
-        self._tolerances = kernel_tolerances(scene.size_m / self._frame.length_m, scene.tolerances.touch)
-        self._placement = empty_placed_boxes(self._frame.geometry)
-        self._random = np.random.default_rng(RANDOM_SEED)
-        self._stations: Rows[Station] = empty_rows(Station, MOST_STATIONS)
-        self._stations[0].parent = -1
-        self._stations[0].quaternion[0] = 1.0
+        self._tree = FreeMotions(scene, self._frame, MOST_STATIONS, MOTIONS_OF_BATCH)
+        self._stations = self._tree.stations
         start = scene.object.pose_world_object
         self._poses, self._tops = [start], [start]
         self._peaks = [work.potential(start)]
@@ -182,26 +175,26 @@ class _Search:
         self._force = work.forces.sum(axis=0)
         self.least_j, self.path = math.inf, tuple[PathStep, ...]()
         self.top: Pose | None = None
-        self.n_ways = self.n_tried = 0
+        self.n_ways = 0
+
+    @property
+    def n_tried(self) -> int:
+        return self._tree.n_tried
 
     def go_on(self, n_motions: int, progress: Callable[[float], None] | None) -> None:
         while self.n_tried < n_motions and self.least_j > self._level * self._frame.length_m:
             if progress is not None:
                 progress(self.n_tried / n_motions)
-            if len(self._peaks) + MOTIONS_OF_BATCH > MOST_STATIONS:
+            if not self._tree.has_room:
                 self._keep([0])
             self._grow()
 
     def _grow(self) -> None:
         """Try some motions, and keep those that stay below the best way out."""
         before = len(self._peaks)
-        samples = self._random.random((MOTIONS_OF_BATCH, N_RANDOM))
-        n_stations, is_out = grow_tree(
-            self._frame.geometry, samples, self._stations, before, self._placement, self._tolerances
-        )
-        self.n_tried += MOTIONS_OF_BATCH
-        for index in range(before, n_stations):
-            self._judge(index, is_out and index == n_stations - 1)
+        self._tree.grow()
+        for index in range(before, self._tree.n_stations):
+            self._judge(index, self._tree.is_out and index == self._tree.n_stations - 1)
         kept = [index for index, peak in enumerate(self._peaks) if self._is_low(peak)]
         if len(kept) < len(self._peaks):
             self._keep(kept)
@@ -226,7 +219,7 @@ class _Search:
     def _shortened(self, index: int, step: PathStep, before: Pose) -> PathStep:
         """End a travel up without end at a random place that is lower than the best way out."""
         assert step.motion.direction_world is not None
-        station, share = self._stations[index], float(self._random.random())
+        station, share = self._stations[index], self._tree.share()
         height_m = step.motion.distance_m
         if math.isfinite(self.least_j):
             left_j = self.least_j - (self._work.potential(before) - self._peaks[0])
@@ -278,3 +271,4 @@ class _Search:
         self._poses = [self._poses[index] for index in whole]
         self._peaks = [self._peaks[index] for index in whole]
         self._tops = [self._tops[index] for index in whole]
+        self._tree.n_stations = len(whole)

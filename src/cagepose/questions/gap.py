@@ -5,22 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from cagepose.errors import Problem, SceneError
-from cagepose.kernels.algebra.record import empty_rows
-from cagepose.kernels.algebra.tolerances import kernel_tolerances
-from cagepose.kernels.collision.boxes import empty_placed_boxes
-from cagepose.kernels.play.escape import N_RANDOM, Station, grow_tree
 from cagepose.model.checks import expect_count, is_finite
 from cagepose.model.scene import Scene
 from cagepose.questions.unanswered import Unanswered
+from cagepose.studies.free_motions import MOTIONS_OF_BATCH, FreeMotions
 from cagepose.studies.play import play
 from cagepose.studies.play_frame import PlayFrame
 
 N_MOTIONS = 20_000
-MOTIONS_OF_BATCH = 500
-RANDOM_SEED = 20250101
 N_HALVINGS = 14
 """Of the range, for each of the two ends that are closed in."""
 
@@ -107,14 +100,7 @@ def _last(holds: Callable[[float], bool], first: float, last: float) -> float | 
 
 def _gets_out(scene: Scene, n_motions: int) -> bool:
     """Whether so many motions lead out."""
-    frame, stations, n_stations = PlayFrame(scene), empty_rows(Station, n_motions + MOTIONS_OF_BATCH), 1
-    stations[0].parent = -1
-    stations[0].quaternion[0] = 1.0
-    tolerances = kernel_tolerances(scene.size_m / frame.length_m, scene.tolerances.touch)
-    placement, random = empty_placed_boxes(frame.geometry), np.random.default_rng(RANDOM_SEED)
-    for _ in range(0, n_motions, MOTIONS_OF_BATCH):
-        samples = random.random((MOTIONS_OF_BATCH, N_RANDOM))
-        n_stations, is_out = grow_tree(frame.geometry, samples, stations, n_stations, placement, tolerances)
-        if is_out:
-            return True
-    return False
+    tree = FreeMotions(scene, PlayFrame(scene), n_motions + MOTIONS_OF_BATCH)
+    while not tree.is_out and tree.n_tried < n_motions:
+        tree.grow()
+    return tree.is_out

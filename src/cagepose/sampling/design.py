@@ -12,9 +12,9 @@ from cagepose.files.design_file import DesignFile, parse_design, read_design_fil
 from cagepose.files.study_file import refused_at, study_text
 from cagepose.model.checks import FloatArray
 from cagepose.sampling.design_results import DesignResults
-from cagepose.sampling.statistics import wilson
 from cagepose.sampling.study import scene_name
 from cagepose.sampling.trade_off import TradeOffPoint, captured_range, trade_off
+from cagepose.studies.likelihood import wilson
 from cagepose.views.extra import require_study
 
 if TYPE_CHECKING:

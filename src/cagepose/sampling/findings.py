@@ -20,8 +20,9 @@ from cagepose.sampling.results import StudyResults
 from cagepose.sampling.runner import Runner
 from cagepose.sampling.sample import Sample
 from cagepose.sampling.sensitivity import Sensitivity, sensitivities
-from cagepose.sampling.statistics import Statistics, statistics_of, wilson
+from cagepose.sampling.statistics import Statistics, statistics_of
 from cagepose.sampling.tolerances import ToleranceRow, tolerance_rows
+from cagepose.studies.likelihood import wilson
 
 
 @dataclass(frozen=True)

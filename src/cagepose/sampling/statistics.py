@@ -119,17 +119,3 @@ def statistics_of(results: StudyResults) -> Statistics:
         for name, spread in found.spreads.items():
             spread.count(part[name][at_rest(part["verdict"])])
     return found
-
-
-def wilson(n_good: int, n_runs: int) -> tuple[float, float]:
-    """Return the interval in which the likelihood of a good run lies, with 95 % confidence (Wilson 1927).
-
-    >>> [round(limit, 4) for limit in wilson(0, 100)]
-    [0.0, 0.037]
-    """
-    from scipy.stats import binomtest  # of the extra, which importing a class does not need
-
-    if n_runs == 0:
-        return 0.0, 1.0
-    found = binomtest(n_good, n_runs).proportion_ci(0.95, "wilson")
-    return float(found.low), float(found.high)

@@ -11,22 +11,18 @@ import numpy as np
 
 from cagepose.kernels.algebra.pose import euler_zyx_from_quaternion
 from cagepose.kernels.algebra.record import Rows, empty_rows
-from cagepose.kernels.algebra.tolerances import kernel_tolerances
-from cagepose.kernels.collision.boxes import empty_placed_boxes
 from cagepose.kernels.play.certificate import FREE, OFF_EDGE, RAN_OFF, UNSOLVED
-from cagepose.kernels.play.escape import N_RANDOM, Station, grow_tree
+from cagepose.kernels.play.escape import Station
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.wording import short
 from cagepose.runs.run import Motion
 from cagepose.studies.bounds import Bounds
+from cagepose.studies.free_motions import FreeMotions
 from cagepose.studies.play_frame import PlayFrame, motion_after
 
 Caged = Literal["caged", "not certified", "escapes"]
 MOST_STATIONS = 100_000
-MOTIONS_OF_BATCH = 500
-"""Motions that are tried between two looks at the clock: some milliseconds."""
-RANDOM_SEED = 20250101
 NOISE_DEG = 1e-6
 """Angles below this are told as 0."""
 STAND_INS_ARE_FREE = (
@@ -147,24 +143,16 @@ def search_way_out(
     Returns the stations (lengths of the scene), how many there are, whether the last one is out, and how many motions
     were tried.
     """
-    stations = empty_rows(Station, MOST_STATIONS)
-    stations[0].parent = -1
-    stations[0].quaternion[0] = 1.0
-    n_stations, n_tried, is_out = 1, 0, False
-    placement = empty_placed_boxes(frame.geometry)
-    tolerances = kernel_tolerances(scene.size_m / frame.length_m, scene.tolerances.touch)
-    random = np.random.default_rng(RANDOM_SEED)
+    tree = FreeMotions(scene, frame, MOST_STATIONS)
     started = perf_counter()
-    while not is_out and n_stations + MOTIONS_OF_BATCH <= MOST_STATIONS:
+    while not tree.is_out and tree.has_room:
         share = (perf_counter() - started) / search_s if search_s > 0.0 else 1.0
         if progress is not None:
             progress(min(share, 1.0))
         if share >= 1.0:
             break
-        samples = random.random((MOTIONS_OF_BATCH, N_RANDOM))
-        n_stations, is_out = grow_tree(frame.geometry, samples, stations, n_stations, placement, tolerances)
-        n_tried += MOTIONS_OF_BATCH
-    return stations, n_stations, is_out, n_tried
+        tree.grow()
+    return tree.stations, tree.n_stations, tree.is_out, tree.n_tried
 
 
 def _path(frame: PlayFrame, stations: Rows[Station], last: int) -> tuple[PathStep, ...]:

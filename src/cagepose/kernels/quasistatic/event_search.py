@@ -166,8 +166,8 @@ def passed_before(
     """
     place_object(setting.geometry, path.position, path.quaternion, work.placement)
     velocity, spin = twist_between(path.position, path.quaternion, end, turned)
-    screw, at = Twist(velocity, spin, 1.0), (path.position, path.quaternion)
-    met = first_contact(setting, work.placement, work.contacts, at[0], at[1], screw, reach_m)
+    screw = Twist(velocity, spin, 1.0)
+    met = first_contact(setting, work.placement, work.contacts, path.position, path.quaternion, screw, reach_m)
     if met.feature < 0 or gap_of(setting, met, end, turned, work) >= -setting.tolerances.touch_m:
         return NO_HIT
     return Hit(met.amount * amount, met.feature, met.cage_feature, met.angle)
@@ -237,18 +237,18 @@ def furthest_step(setting: Setting, path: Path, work: QuasistaticWorkspace) -> t
     as_planned = True
     for _ in range(HALVINGS):
         done, end, turned = step_to(setting, path, amount, hit, work)
-        passed = NO_HIT
-        if done and is_curved and amount < twist.end:
-            passed = passed_before(setting, path, amount, end, turned, reach_m, work)
-        if done and passed.feature < 0:
-            place_object(setting.geometry, end, turned, placement)
+        if done and not (is_curved and amount < twist.end):
             return amount, as_planned and amount > 0.0, end, turned
-        if passed.feature >= 0:
+        if done:
+            passed = passed_before(setting, path, amount, end, turned, reach_m, work)
+            if passed.feature < 0:
+                place_object(setting.geometry, end, turned, placement)
+                return amount, as_planned and amount > 0.0, end, turned
             hit = hit_on_path(setting, path, passed, spread, work)
-        if passed.feature >= 0 and hit.amount < amount:
-            amount = hit.amount
-        else:
-            amount, hit, as_planned = 0.5 * amount, NO_HIT, False
+            if hit.amount < amount:
+                amount = hit.amount
+                continue
+        amount, hit, as_planned = 0.5 * amount, NO_HIT, False
     return 0.0, False, path.position, path.quaternion
 
 

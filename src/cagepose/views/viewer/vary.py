@@ -11,6 +11,7 @@ from cagepose.files.key_path import parse_key_path, resolved, value_at
 from cagepose.files.scene_file import SceneFile, SceneText
 from cagepose.files.units import from_metres, unit_at
 from cagepose.files.words import LengthWords
+from cagepose.model.checks import is_finite
 from cagepose.runs.many import Runs, run_many
 
 MOST_NUMBERS = 64
@@ -30,9 +31,9 @@ def runs_with(scene_text: SceneText, key: object, numbers: object) -> dict[str, 
         No number stands there, or too many or other things than numbers are given.
     """
     path = resolved(scene_text.yaml.data, parse_key_path(str(key)))
-    if not _is_number(value_at(scene_text.yaml.data, path)):
+    if not is_finite(value_at(scene_text.yaml.data, path)):
         raise ValueError(f"{key} is no number of this scene")
-    if not isinstance(numbers, list) or len(numbers) > MOST_NUMBERS or not all(_is_number(one) for one in numbers):
+    if not isinstance(numbers, list) or len(numbers) > MOST_NUMBERS or not all(is_finite(one) for one in numbers):
         raise ValueError(f"{key} can be varied by lists of at most {MOST_NUMBERS} numbers")
     nominal = scene_text.scene_file()
     made: list[SceneFile | str] = []
@@ -61,7 +62,3 @@ def _end(runs: Runs, row: int, made: SceneFile) -> dict[str, Any]:
         "touching": [names[index] for index in np.flatnonzero(runs.touching[row, last]).tolist()],
         "center": from_metres(center_m, made.length_unit).tolist() if np.isfinite(center_m).all() else None,
     }
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and bool(np.isfinite(value))

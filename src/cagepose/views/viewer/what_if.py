@@ -18,6 +18,7 @@ from cagepose.files.parameters import evaluated
 from cagepose.files.scene_edit import ANGLE_DECIMALS, changed_text, setting, with_cage_angles
 from cagepose.files.scene_file import SceneFile, SceneText
 from cagepose.files.units import from_metres, to_metres
+from cagepose.model.checks import is_number
 from cagepose.model.pose import Pose
 from cagepose.runs.solve import run
 from cagepose.views.viewer.controls import Control, controls
@@ -146,7 +147,7 @@ class WhatIf:
         keys = {START, *(control.key for control in self.controls)}
         changes = dict[str, object]()
         for key, value in values.items():
-            if key not in keys and not (_is_number(value) and _is_number(self._at(key))):
+            if key not in keys and not (is_number(value) and is_number(self._at(key))):
                 raise ValueError(f"{key} cannot be changed here")
             if not _is_plain(value):
                 raise ValueError(f"{key} is no number, no word and no list of numbers")
@@ -211,9 +212,5 @@ def _is_vector(numbers: Any, length: int) -> bool:
 
 def _is_plain(value: object) -> bool:
     if isinstance(value, list):
-        return len(value) < 10 and all(_is_number(item) for item in value)
-    return _is_number(value) or (isinstance(value, str) and value.isalnum())
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
+        return len(value) < 10 and all(is_number(item) for item in value)
+    return is_number(value) or (isinstance(value, str) and value.isalnum())
