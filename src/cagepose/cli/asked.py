@@ -5,41 +5,25 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Protocol, TypeVar, runtime_checkable
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 from cyclopts import Parameter
 
 from cagepose.cli.options import Switch
 
 if TYPE_CHECKING:
+    from cagepose.files.answers import AnswerModule
     from cagepose.files.scene_file import SceneFile
     from cagepose.files.units import LengthUnit
-    from cagepose.files.words import LengthWords
     from cagepose.questions.unanswered import Unanswered
     from cagepose.runs.run import Run
 
 Answer = TypeVar("Answer")
-Told = TypeVar("Told", contravariant=True)
 
 PhaseOption = Annotated[
     str | None, Parameter(help="The phase at whose end it is asked. Left out: the last.", show_default=False)
 ]
 JsonOption = Annotated[bool, Switch, Parameter(help="Print one JSON document instead of the lines.")]
-
-
-class AnswerModule(Protocol[Told]):
-    """A module of `cagepose.files.answers`."""
-
-    def lines(self, answer: Told, words: LengthWords, /) -> list[tuple[str, str]]:
-        """Return the answer as people read it: names and texts."""
-
-
-@runtime_checkable
-class TableModule(Protocol[Told]):
-    """One whose answer has rows, too."""
-
-    def table(self, answer: Told, words: LengthWords, /) -> list[list[str]]:
-        """Return rows of texts for people, the first one the header."""
 
 
 @dataclass(frozen=True)
@@ -96,8 +80,6 @@ def print_answer(
     json: bool,
 ) -> None:
     """Print an answer, or why there is none, about the scene of a name and a size."""
-    from cagepose.questions.unanswered import Unanswered
-
     if json:
         from cagepose.files.document import FORMAT_VERSION
         from cagepose.files.results import plain_data
@@ -111,18 +93,15 @@ def print_answer(
 
     from cagepose.cli.console import print_all
     from cagepose.cli.styles import plain_table
+    from cagepose.files.answers import told
     from cagepose.files.words import LengthWords
 
-    words, grid, tables = LengthWords(unit, size_m), Table.grid(padding=(0, 2)), list[Table]()
-    if isinstance(answer, Unanswered):
-        told = [("no answer", answer.unanswered)]
-    else:
-        told = answers.lines(answer, words)
-        if isinstance(answers, TableModule):
-            head, *rows = answers.table(answer, words)
-            tables.append(plain_table(*head))
-            for row in rows:
-                tables[0].add_row(*map(Text, row))
-    for title, text in told:
+    (lines, rows), grid = told(answer, answers, LengthWords(unit, size_m)), Table.grid(padding=(0, 2))
+    for title, text in lines:
         grid.add_row(Text(title), Text(text, overflow="fold"))
-    print_all(Text(name), "", grid, *(part for table in tables for part in ("", table)))
+    print_all(Text(name), "", grid)
+    if rows:
+        table = plain_table(*rows[0])
+        for row in rows[1:]:
+            table.add_row(*map(Text, row))
+        print_all("", table)

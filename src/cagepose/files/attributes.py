@@ -11,6 +11,8 @@ from typing import Any, NamedTuple, get_type_hints
 
 FRAME = re.compile("_(world|object|cage|box|body|shape)(?![a-z])")
 UNIT = re.compile("_(m|rad)$")
+ENDINGS = ("_n_per_m", "_nm", "_rad", "_m", "_j", "_n", "_s")
+"""Units at the end of a name."""
 PLACES = {"through_world", "place_world", "places_world", "at_object"}
 """Attributes without a unit in their name that are places, metres."""
 
@@ -38,6 +40,16 @@ def attributes_of(kind: type) -> tuple[Attribute, ...]:
         for argument, parameter in parameters.items()
         if argument in names
     )
+
+
+def parted(name: str) -> tuple[str, str]:
+    """Return a name without the unit at its end, and that: empty, if there is none.
+
+    >>> parted("stiffness_n_per_m"), parted("follows")
+    (('stiffness', '_n_per_m'), ('follows', ''))
+    """
+    ending = next((ending for ending in ENDINGS if name.endswith(ending)), "")
+    return name.removesuffix(ending), ending
 
 
 def without_frame(name: str) -> str:

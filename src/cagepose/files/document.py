@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any, Literal
 
 from cagepose.files.margin_document import margin_document
-from cagepose.files.results import length_data, motion_data, plain_data, pose_data
+from cagepose.files.results import angle_data, length_data, motion_data, plain_data, pose_data
 from cagepose.files.units import LengthUnit
 from cagepose.model.load import Load
 from cagepose.model.pose import Pose
@@ -111,9 +111,7 @@ class _Writer:
                 "share": (curve.share + 0.0).tolist(),
                 "along": [self._along(along, load, share) for share, along, _ in curve.places()],
                 "position": length_data(curve.position_m, self.unit),
-                "euler_zyx_deg": [
-                    [math.degrees(angle) + 0.0 for angle in pose.euler_zyx] for _, _, pose in curve.places()
-                ],
+                "euler_zyx_deg": [angle_data(pose) for _, _, pose in curve.places()],
             },
         }
 

@@ -16,15 +16,13 @@ from typing import Any, NamedTuple, TypeVar, cast, get_args
 import numpy as np
 from pydantic import BaseModel
 
-from cagepose.files.attributes import Attribute, attributes_of
+from cagepose.files.attributes import Attribute, attributes_of, parted
 from cagepose.files.units import METRES_OF, LengthUnit, to_metres
 
 Kind = TypeVar("Kind")
 
 FEWEST_DIGITS, MOST_DIGITS = 6, 17
 """A number is written with so many digits; 17 tell any two doubles apart."""
-ENDINGS = ("_n_per_m", "_nm", "_rad", "_m", "_n")
-"""Units at the end of an argument's name; what has none of them has the same number in a file."""
 BESIDE = {"pose_body_shape", "pose_object_box", "name"}
 """Arguments of shapes that stand beside their numbers."""
 
@@ -43,9 +41,7 @@ def _keys(kind: type) -> tuple[_Key, ...]:
 
 
 def _key(attribute: Attribute) -> _Key:
-    argument = attribute.argument
-    ending = next((ending for ending in ENDINGS if argument.endswith(ending)), "")
-    key = argument.removesuffix(ending)
+    key, ending = parted(attribute.argument)
     return _Key(f"{key}_deg" if ending == "_rad" else key, ending, attribute)
 
 

@@ -14,17 +14,15 @@ from typing import Any
 
 import numpy as np
 
-from cagepose.files.attributes import PLACES, without_frame
+from cagepose.files.attributes import PLACES, parted, without_frame
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.pose import Pose
 from cagepose.runs.run import Motion
 
 KEYS = {"place_world": "at", "equally_stiff_n": "equally_stiff_normal"}
 """The fields whose key is another one."""
-PER_LENGTH, LENGTHS, NUMBERS = "_n_per_m", ("_m", "_nm", "_j"), ("_n", "_s")
-"""Units, at the end of a name: of what is told for each of the scene's units of length, in these, and of what stays as
-it is.
-"""
+LENGTHS = ("_m", "_nm", "_j")
+"""Units, at the end of a name, of what is told in the scene's unit of length."""
 INFINITE = {"critical_friction": "none", "balance": "none", "distance_m": None}
 """What stands for an infinite number, which JSON has not, in some fields; in all others, `UNBOUNDED`."""
 UNBOUNDED = "unbounded"
@@ -44,9 +42,14 @@ def pose_data(pose: Pose, unit: LengthUnit) -> dict[str, Any]:
     """Return where something is, and how it is turned: as angles and as a quaternion."""
     return {
         "position": length_data(pose.position_m, unit),
-        "euler_zyx_deg": [math.degrees(angle) + 0.0 for angle in pose.euler_zyx],
+        "euler_zyx_deg": angle_data(pose),
         "quat_wxyz": (pose.quaternion_wxyz + 0.0).tolist(),
     }
+
+
+def angle_data(pose: Pose) -> list[float]:
+    """Return yaw, pitch and roll in degrees."""
+    return [math.degrees(angle) + 0.0 for angle in pose.euler_zyx]
 
 
 def length_data(lengths_m: Any, unit: LengthUnit) -> Any:
@@ -69,20 +72,15 @@ def _names(result: object) -> list[str]:
 
 def _item(name: str, value: Any, unit: LengthUnit) -> tuple[str, Any]:
     """Return the key and the plain value of a field."""
-    key = KEYS.get(name, without_frame(name))
+    key, ending = parted(without_frame(name))
     infinite = INFINITE.get(name, UNBOUNDED)
-    if name in PLACES:
-        return key, _plain(value, unit, lambda lengths: from_metres(lengths, unit), infinite)
-    if key.endswith(PER_LENGTH):
-        return key.removesuffix(PER_LENGTH), _plain(value, unit, lambda each: each / from_metres(1.0, unit), infinite)
-    for ending in LENGTHS:
-        if key.endswith(ending):
-            return key.removesuffix(ending), _plain(value, unit, lambda lengths: from_metres(lengths, unit), infinite)
-    if key.endswith("_rad"):
-        return f"{key.removesuffix('_rad')}_deg", _plain(value, unit, np.degrees, infinite)
-    for ending in NUMBERS:
-        key = key.removesuffix(ending)
-    return key, _plain(value, unit, lambda numbers: numbers, infinite)
+    if name in PLACES or ending in LENGTHS:
+        told = _plain(value, unit, lambda lengths: from_metres(lengths, unit), infinite)
+    elif ending == "_n_per_m":
+        told = _plain(value, unit, lambda each: each / from_metres(1.0, unit), infinite)
+    else:
+        told = _plain(value, unit, np.degrees if ending == "_rad" else lambda numbers: numbers, infinite)
+    return KEYS.get(name, f"{key}_deg" if ending == "_rad" else key), told
 
 
 def _plain(value: Any, unit: LengthUnit, convert: Convert, infinite: str | None) -> Any:

@@ -11,6 +11,7 @@ from cagepose.files.answers import escape as of_escape
 from cagepose.files.answers import friction as of_friction
 from cagepose.files.answers import jam as of_jam
 from cagepose.files.answers import resting as of_resting
+from cagepose.files.answers import told
 from cagepose.files.units import LengthUnit
 from cagepose.files.words import LengthWords
 from cagepose.questions.cage_rests import cage_rests
@@ -18,7 +19,6 @@ from cagepose.questions.escape import escape_energy
 from cagepose.questions.friction import friction_limits
 from cagepose.questions.jam import jam
 from cagepose.questions.resting import is_on_floor_alone, resting_poses
-from cagepose.questions.unanswered import Unanswered
 from cagepose.runs.run import Run
 
 N_MOTIONS, N_STARTS = 4_000, 60
@@ -75,9 +75,6 @@ def answered(run: Run, name: object, phase: object, unit: LengthUnit) -> dict[st
         raise ValueError("that cannot be asked here")
     if not isinstance(phase, int) or not 0 <= phase < len(run.phases):
         raise ValueError("the question is about a phase that was not run")
-    answer, told = QUESTIONS[name].ask(run, run.phases[phase].name)
-    if isinstance(answer, Unanswered):
-        return {"lines": [["no answer", answer.unanswered]], "table": []}
-    words = LengthWords(unit, run.scene.size_m)
-    table = told.table(answer, words) if hasattr(told, "table") else []
-    return {"lines": [list(line) for line in told.lines(answer, words)], "table": table}
+    answer, module = QUESTIONS[name].ask(run, run.phases[phase].name)
+    lines, table = told(answer, module, LengthWords(unit, run.scene.size_m))
+    return {"lines": [list(line) for line in lines], "table": table}
