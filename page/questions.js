@@ -5,7 +5,7 @@ import { $, button, element } from "./words.js";
 export class Questions {
   // `questions`: by name, what a button says. `scene()` is the text and the values that a run is of, `phase()` that on screen.
   constructor(questions, asker, { scene, phase }) {
-    Object.assign(this, { asker, scene, phase, answered: null });
+    Object.assign(this, { asker, scene, phase });
     $("askable").replaceChildren(...Object.entries(questions).map(([name, words]) => button(words, "of the phase on screen", () => this.ask(name))));
     $("questions").hidden = false;
   }

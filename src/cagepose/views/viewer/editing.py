@@ -91,7 +91,7 @@ class Desk:
             **self._told(self._asked({})),
             "fileName": f"{self._path.stem}-changed.yaml",
             "text": _with_plain_ends(self._start),
-            "questions": {name: question.words for name, question in QUESTIONS.items()},
+            "questions": QUESTIONS,
         }
         if not self._can_edit:
             return content

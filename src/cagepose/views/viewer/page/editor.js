@@ -1,4 +1,4 @@
-// Built by `make page` from page/ (sources 85ce01572f04d4dcdb156fb9fbc8ffa2e0f9db8fa7d2f30e57c57d10be170574).
+// Built by `make page` from page/ (sources a7191306b41d535a8f7cb74d1a229d7a928d01b83bbd50a571ac27de0e6bb764).
 /*! Contains parts of @codemirror/autocomplete, @codemirror/commands, @codemirror/language, @codemirror/lint, @codemirror/state, @codemirror/streamparser, @codemirror/view:
 MIT License
 
