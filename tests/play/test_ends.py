@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from audit.caged_families import GRAVITY
 from audit.families import drawn_scenes, make_case
 from cagepose import Box, Cage, Object, Play, Scene, play
-from cagepose.studies import cage_verdict
+from cagepose.studies import cage_verdict, free_motions
 from cagepose.studies.cage_verdict import search_way_out
 from cagepose.studies.play_frame import FREEDOMS, PlayFrame
 from cagepose.studies.play_result import PlayEnd
@@ -81,7 +81,7 @@ def test_trees_of_free_motions_pass_no_proven_end_and_few_local_ones(cases, monk
     n_ends, n_passed = Counter[str](), Counter[str]()
     for scene in scenes(cases(8, 60)):
         found, frame = play(scene, search_s=0.0), PlayFrame(scene)
-        stations, n_stations, _, _ = search_way_out(scene, frame, TRIES / cage_verdict.MOTIONS_OF_BATCH)
+        stations, n_stations, _, _ = search_way_out(scene, frame, TRIES / free_motions.MOTIONS_OF_BATCH)
         positions, turns = stations["position"][:n_stations], stations["quaternion"][:n_stations, [1, 2, 3, 0]]
         turned = Rotation.from_quat(turns)
         origin = np.array(frame.pose_frame_object.position_m)
