@@ -86,3 +86,12 @@ def test_where_a_function_is_not_known_there_is_no_number_and_no_comparison_is_t
 def test_scenes_have_no_functions_of_columns() -> None:
     with pytest.raises(ValueError, match="calls sin, which no expression may"):
         Expression("sin(1)").value({})
+
+
+@pytest.mark.usefixtures("no_pictures", "small_designs")
+def test_the_report_is_made_where_a_formula_has_a_value_in_some_rows(run_study: RunStudy) -> None:
+    results = run_study(DIMENSIONS, 32, scene=CLUTCH, compute={**ANGLE, "beyond": "sqrt(phi - 7)"})
+    known = [row["beyond"] for row in results.table().to_pylist() if row["beyond"] is not None]
+    spread = findings_of(results).statistics.spreads["beyond"]
+    assert 0 < len(known) < 32
+    assert (spread.n, spread.least, spread.greatest) == (len(known), min(known), max(known))

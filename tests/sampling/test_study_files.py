@@ -40,7 +40,7 @@ KINDS = "give one of: uniform, normal, triangular, grid, steps"
 # What is broken, the text to replace, what to put there, and the line that must come out, or its beginning.
 EDITS = [
     ("unknown key", "watch:", "wach:", "7:1: wach: is no known key; did you mean watch? known keys: scene, vary,"
-     " watch, compute, accept, sample, forces, sensitivities, map"),
+     " watch, ask, compute, accept, sample, forces, sensitivities, map"),
     ("no scene", "scene: scene.yaml\n", "", "1:1: scene: is missing; add it, for example scene: scene.yaml"),
     ("no sample", "sample: {method: sobol, runs: 100, seed: 1}\n", "", "1:1: sample: is missing; add it"),
     ("nothing varies", STUDY[STUDY.index("vary:") : STUDY.index("sample:")], "vary: {}\n",

@@ -10,6 +10,8 @@ from cagepose.files.schema_base import Mapping, Number, Positive, Vector, wrong
 
 MOST_RUNS = 2**30
 """As many points as SciPy's Sobol sequence has."""
+Question = Literal["friction", "margin", "jam", "play"]
+"""What can be asked of each run."""
 DISTRIBUTIONS = ("uniform", "normal", "triangular", "grid", "steps")
 
 
@@ -25,6 +27,12 @@ def _distinct(values: list[float]) -> list[float]:
     if len(set(values)) != len(values):
         raise wrong("holds a number twice; give each once")
     return values
+
+
+def _asked_once(questions: list[Question]) -> list[Question]:
+    if len(set(questions)) != len(questions):
+        raise wrong("holds a question twice; ask each once")
+    return questions
 
 
 class NormalModel(Mapping):
@@ -155,10 +163,16 @@ class RunsModel(Mapping):
     watch: dict[ColumnName, WatchModel] | None = Field(
         None, description="Points whose final places become columns.", examples=[{"tip": {"point": [600, 0, 0]}}]
     )
+    ask: Annotated[list[Question], Field(min_length=1), AfterValidator(_asked_once)] | None = Field(
+        None,
+        description="Questions whose answers become columns, as of cagepose ask friction, run --margin, ask jam and"
+        " play; each row's scene is built and run by itself.",
+        examples=[["friction", "margin"]],
+    )
     compute: dict[ColumnName, str] | None = Field(
         None,
         description="More columns, each an expression of others and of those before it: varied numbers, the final pose,"
-        " watched points, forces; with sqrt, hypot, sin, cos, tan, asin, acos, atan, atan2 (radians), degrees,"
+        " watched points, forces, answers; with sqrt, hypot, sin, cos, tan, asin, acos, atan, atan2 (radians), degrees,"
         " radians.",
         examples=[{"phi": "degrees(atan2(position_x, position_y))"}],
     )

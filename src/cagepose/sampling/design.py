@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -36,7 +36,7 @@ class Design:
         The number that is to be chosen, by its key, and its tight and its loose end: ``{"parameters.play": [0.1, 2]}``.
     wish
         ``{"yield": 0.997}``, or ``{"capture": {"parameters.pitch": 0.5}}``.
-    vary, sample, watch, compute, accept
+    vary, sample, watch, ask, compute, accept
         As of a `Study`; a capture range needs no sample.
 
     Raises
@@ -56,11 +56,12 @@ class Design:
         sample: Mapping[str, Any] | None = None,
         *,
         watch: Mapping[str, Any] | None = None,
+        ask: Sequence[str] | None = None,
         compute: Mapping[str, str] | None = None,
         accept: str | None = None,
     ) -> None:
         content: dict[str, Any] = {"scene": scene_name(scene), "change": change, "wish": wish, "vary": vary}
-        content |= {"sample": sample, "watch": watch, "compute": compute, "accept": accept}
+        content |= {"sample": sample, "watch": watch, "ask": ask, "compute": compute, "accept": accept}
         self._begin(parse_design(study_text(content), "design"), "design")
 
     @classmethod

@@ -35,6 +35,9 @@ class Outcomes:
     forces
         What each of them carries there, the sum of its normal forces, (n, n_elements); NaN where no forces balance the
         load. None: not asked for.
+    answers
+        What is asked of each run, (n, n_columns of `cagepose.sampling.asked.AskedColumns`); NaN: no answer. None:
+        nothing is asked.
     drive_shares, greatest_along, jam_possible
         What came of the drive of each phase, (n, n_phases), as in `cagepose.runs.many.Runs`.
     errors
@@ -49,6 +52,7 @@ class Outcomes:
     euler_zyx: FloatArray
     touching: NDArray[np.bool_]
     forces: FloatArray | None
+    answers: FloatArray | None
     drive_shares: FloatArray
     greatest_along: FloatArray
     jam_possible: NDArray[np.bool_]
@@ -120,8 +124,8 @@ def at_rest(verdicts: NDArray[Any]) -> NDArray[np.bool_]:
     return np.isin(verdicts, sorted(AT_REST))
 
 
-def empty_outcomes(scene: Scene, n_runs: int, *, with_forces: bool) -> Outcomes:
-    """Return memory for runs of scenes that are like ``scene``."""
+def empty_outcomes(scene: Scene, n_runs: int, *, with_forces: bool, n_answers: int) -> Outcomes:
+    """Return memory for runs of scenes that are like ``scene``, and for so many answers about each."""
     n_phases, n_elements = len(scene.loads), len(scene.cage.element_names)
     return Outcomes(
         np.full((n_runs, n_phases), "", dtype="<U10"),
@@ -130,6 +134,7 @@ def empty_outcomes(scene: Scene, n_runs: int, *, with_forces: bool) -> Outcomes:
         np.full((n_runs, 3), np.nan),
         np.zeros((n_runs, n_elements), np.bool_),
         np.full((n_runs, n_elements), np.nan) if with_forces else None,
+        np.full((n_runs, n_answers), np.nan) if n_answers else None,
         np.full((n_runs, n_phases), np.nan),
         np.full((n_runs, n_phases), np.nan),
         np.zeros((n_runs, n_phases), np.bool_),
@@ -148,6 +153,7 @@ def outcomes_of(runs: Runs) -> Outcomes:
         runs.quaternion_wxyz[rows, last],
         runs.euler_zyx[rows, last],
         runs.touching[rows, last],
+        None,
         None,
         runs.drive_shares,
         runs.greatest_along,

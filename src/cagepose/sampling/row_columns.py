@@ -18,6 +18,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.wording import few
 from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.run import FAILURES
+from cagepose.sampling.asked import AskedColumns
 from cagepose.sampling.outcome import REFUSED, Outcomes, at_rest
 
 SAME_LENGTH_OF_SIZE = 1e-8
@@ -54,7 +55,7 @@ class RowColumns:
     ----------
     varied, quantities
         Names of the varied numbers, and of what is measured of each run: the final pose, the watched points, how far
-        each drive got with which force, and what is computed of these.
+        each drive got with which force, what is asked, and what is computed of these.
     watched
         Those of the quantities that belong to watched points.
     resolution
@@ -81,12 +82,15 @@ class RowColumns:
         self.driven = {load.name: place for place, load in enumerate(scene.loads) if load.drive}
         pose = (*(f"position_{axis}" for axis in AXES), *ANGLES, *self.watched)
         drives = {f"{kind}_{phase}": same for phase in self.driven for kind, same in SAME_DRIVE.items()}
-        self.quantities = (*pose, *drives, *study.compute)
+        asked = AskedColumns(study.model.ask or (), scene, study.nominal.length_unit).columns
+        self.quantities = (*pose, *drives, *(column.name for column in asked), *study.compute)
         self.resolution = {name: SAME_DEG if name in ANGLES else lengths for name in pose} | drives
+        self.resolution |= {column.name: column.same for column in asked}
         self.resolution |= dict.fromkeys(study.compute, SAME_COMPUTED)
         of_quantities = {name: "deg" if name in ANGLES else study.nominal.length_unit for name in pose}
         of_quantities |= {f"drive_{phase}": "" for phase in self.driven}
         of_quantities |= {f"force_max_{phase}": self._unit_along(phase) for phase in self.driven}
+        of_quantities |= {column.name: column.unit for column in asked}
         self.units = study.units | of_quantities | dict.fromkeys(study.compute, "")
         self.verdicts = ("verdict", *(f"verdict_{load.name}" for load in scene.loads))
         self.touching = {f"touching_{name}": name for name in elements}
@@ -121,6 +125,8 @@ class RowColumns:
             turns = self._turns_alone(phase)
             drives += [outcomes.drive_shares[:, place], from_metres(greatest, unit) if turns else greatest]
         found = np.concatenate([found, np.reshape(drives, (-1, len(outcomes)))])
+        if outcomes.answers is not None:
+            found = np.concatenate([found, outcomes.answers.T])
         return dict(zip(self.quantities, found + 0.0, strict=False))  # -0.0 becomes 0.0; none is computed yet
 
     def _turns_alone(self, phase: str) -> bool:

@@ -22,6 +22,7 @@ from cagepose.runs.end_forces import end_forces
 from cagepose.runs.many import run_many, runs_of_rows
 from cagepose.runs.scene_rows import SceneRows
 from cagepose.runs.solve import run
+from cagepose.sampling.asked import AskedColumns
 from cagepose.sampling.batch_columns import BatchColumns, Columns
 from cagepose.sampling.outcome import Outcomes, empty_outcomes, outcomes_of
 
@@ -55,7 +56,7 @@ class Runner:
     Attributes
     ----------
     is_batch
-        Whether the batch kernel can vary all numbers.
+        Whether the batch kernel can vary all numbers, and nothing is asked of each run.
     rows_of_a_part
         How many rows are run at once.
 
@@ -78,7 +79,8 @@ class Runner:
         self._nominal, _ = evaluated(nominal)
         self._batch = BatchColumns(self._nominal, study.nominal.length_unit)
         probe = self._columns(np.array([[one.nominal for one in study.varied]]))
-        self.is_batch = all(map(self._batch.takes, probe))
+        self._asked = AskedColumns(study.model.ask or (), study.nominal.scene, study.nominal.length_unit)
+        self.is_batch = not len(self._asked) and all(map(self._batch.takes, probe))
         self.rows_of_a_part = ROWS_OF_A_BATCH if self.is_batch else ROWS_ONE_BY_ONE
         self._pool: ProcessPoolExecutor | None = None
 
@@ -123,20 +125,25 @@ class Runner:
         return self._run_one_by_one(values, bool(self.study.model.forces))
 
     def _run_one_by_one(self, values: FloatArray, has_forces: bool, told: Told | None = None) -> Outcomes:
-        """Build and run the scene of each row; with forces, read all of each run."""
+        """Build and run the scene of each row; with forces or questions, read all of each run."""
+        reads_all, n_answers = has_forces or len(self._asked) > 0, len(self._asked)
         nominal, refused = self.study.nominal.scene, dict[int, str]()
-        outcomes, rows = empty_outcomes(nominal, len(values), with_forces=has_forces), SceneRows(nominal, len(values))
+        outcomes = empty_outcomes(nominal, len(values), with_forces=has_forces, n_answers=n_answers)
+        rows = SceneRows(nominal, len(values))
         for row in range(len(values)):
             try:
-                if has_forces:
-                    outcomes.write_run(row, run(self._scene(values[row])))
+                if reads_all:
+                    ended = run(self._scene(values[row]))
+                    outcomes.write_run(row, ended)
+                    if outcomes.answers is not None and not ended.failed:
+                        outcomes.answers[row] = self._asked.answers(ended)
                 else:
                     rows.run(row, self._scene(values[row]))
             except SceneError as error:
                 refused[row] = str(error)
             if told is not None and row + 1 < len(values):
                 told(row + 1)
-        if not has_forces:
+        if not reads_all:
             outcomes = outcomes_of(runs_of_rows(nominal, rows))
             outcomes.solve_us = rows.solve_s * 1e6
             for row in np.flatnonzero(outcomes.phase_verdicts[:, 0] == "invalid").tolist():

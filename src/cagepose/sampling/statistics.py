@@ -25,7 +25,7 @@ class Spread:
     Attributes
     ----------
     n, mean, least, greatest
-        Of these runs.
+        Of those of these runs in which it is a finite number.
     squares
         Sum of the squares of the distances from the mean.
     counts
@@ -112,10 +112,15 @@ def statistics_of(results: StudyResults) -> Statistics:
         names, counts = np.unique(part["verdict"], return_counts=True)
         found.verdicts.update(dict(zip(names.tolist(), counts.tolist(), strict=True)))
         for name, spread in found.spreads.items():
-            spread.add(part[name][rests])
+            spread.add(_numbers(part[name][rests]))
         for name in columns.touching:
             found.n_touching[name] += int(part[name].sum())
     for part in results.parts([*columns.quantities, "verdict"]):
         for name, spread in found.spreads.items():
-            spread.count(part[name][at_rest(part["verdict"])])
+            spread.count(_numbers(part[name][at_rest(part["verdict"])]))
     return found
+
+
+def _numbers(values: FloatArray) -> FloatArray:
+    """Return those that are: a formula or a question may have no value in a row, or one without end."""
+    return values[np.isfinite(values)]

@@ -34,7 +34,7 @@ class Study:
         By key of the scene, how the number varies: ``{"parameters.play": {"uniform": [0.2, 1.0]}}``.
     sample
         ``{"method": "sobol", "runs": 10_000, "seed": 1}``.
-    watch, compute, accept, forces, sensitivities, map
+    watch, ask, compute, accept, forces, sensitivities, map
         As in a study file.
 
     Raises
@@ -52,6 +52,7 @@ class Study:
         sample: Mapping[str, Any],
         *,
         watch: Mapping[str, Any] | None = None,
+        ask: Sequence[str] | None = None,
         compute: Mapping[str, str] | None = None,
         accept: str | None = None,
         forces: bool | None = None,
@@ -59,7 +60,7 @@ class Study:
         map: Mapping[str, Any] | None = None,
     ) -> None:
         content: dict[str, Any] = {"scene": scene_name(scene), "vary": vary, "sample": sample}
-        content |= {"watch": watch, "compute": compute, "accept": accept}
+        content |= {"watch": watch, "ask": ask, "compute": compute, "accept": accept}
         content |= {"forces": forces, "sensitivities": sensitivities, "map": map}
         self._begin(parse_study(study_text(content), "study"), "study")
 
