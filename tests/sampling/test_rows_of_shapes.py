@@ -71,7 +71,10 @@ OF_CORNER = (
     "cage.shapes[3].convex.vertices[1][0]",
     "cage.pose.euler_zyx_deg[1]",
 )
-WRITTEN = {"clutch": (CLUTCH, ("parameters.hub", "parameters.roller", "parameters.ring")), "corner": (CORNER, OF_CORNER)}
+WRITTEN = {
+    "clutch": (CLUTCH, ("parameters.hub", "parameters.roller", "parameters.ring")),
+    "corner": (CORNER, OF_CORNER),
+}
 VARIED: dict[str, dict[str, Any]] = {
     "plate-on-pins.yaml": {
         "object.shapes[1].hole.radius": {"uniform": [4.98, 5.05]},  # below 5 the pin starts in the plate
