@@ -118,7 +118,8 @@ def test_a_shape_that_is_moved_says_where_it_is_then_and_the_first_where_it_was(
     moved = shape.moved(Pose(travel))
     assert moved.nodes_body() == pytest.approx(nodes + travel)
     assert moved.limits_m() == pytest.approx(limits + travel)
-    assert np.array_equal(shape.nodes_body(), nodes) and np.array_equal(shape.limits_m(), limits)
+    assert np.array_equal(shape.nodes_body(), nodes)
+    assert np.array_equal(shape.limits_m(), limits)
     assert shape.renamed("other").limits_m() == pytest.approx(limits)
     with pytest.raises(ValueError, match="read-only"):
         shape.nodes_body()[0, 0] = 1.0

@@ -44,7 +44,10 @@ object:
     - {name: ear, size: [20, 20, 20], position: [60, 0, 0], euler_zyx_deg: [30, 0, 0]}
   shapes:
     - {name: knob, sphere: {radius: 6}, position: [-30, 0, 20]}
-    - {name: nose, cone: {radius_bottom: 8, length: 10, radius_top: 2}, position: [-53, 0, 0], euler_zyx_deg: [0, -90, 0]}
+    - name: nose
+      cone: {radius_bottom: 8, length: 10, radius_top: 2}
+      position: [-53, 0, 0]
+      euler_zyx_deg: [0, -90, 0]
   center_of_gravity: [0, 0, 5]
   mass: 1
   inertia: [[500, 0, 0], [0, 1100, 0], [0, 0, 1200]]
