@@ -15,6 +15,7 @@ from cagepose import (
     Convex,
     Cylinder,
     Disc,
+    Hole,
     Load,
     Object,
     Pose,
@@ -23,6 +24,7 @@ from cagepose import (
     Sphere,
 )
 from cagepose.model.geometry import object_size, scene_size
+from cagepose.model.shapes import Shape
 
 DOWN = Load("gravity", gravity=(0, 0, -1))
 FAR = [(50, 50, 50), (50, -50, 50), (-50, 0, -50)]
@@ -103,6 +105,24 @@ def test_a_box_among_the_shapes_is_a_box_and_unnamed_ones_get_their_kind_and_num
     assert held.part_paths[:3] == (("boxes", 0), ("shapes", 1, "box"), ("shapes", 5, "box"))
     cage = Cage([(0, 0, 9)], shapes=[Box((1, 1, 1)), Capsule(1, 2), Box((1, 1, 1), name="floor")])
     assert cage.element_names == ("C1", "box1", "capsule1", "floor")
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [Box((1, 2, 3)), Capsule(1, 2), Cone(1, 2, 3), Convex(TETRAHEDRON), Hole(1, 2)],
+    ids=lambda shape: shape.kind,
+)
+def test_a_shape_that_is_moved_says_where_it_is_then_and_the_first_where_it_was(shape: Shape) -> None:
+    nodes, limits = shape.nodes_body().copy(), shape.limits_m().copy()
+    travel = np.array((5.0, 6.0, 7.0))
+    moved = shape.moved(Pose(travel))
+    assert moved.nodes_body() == pytest.approx(nodes + travel)
+    assert moved.limits_m() == pytest.approx(limits + travel)
+    assert np.array_equal(shape.nodes_body(), nodes)
+    assert np.array_equal(shape.limits_m(), limits)
+    assert shape.renamed("other").limits_m() == pytest.approx(limits)
+    with pytest.raises(ValueError, match="read-only"):
+        shape.nodes_body()[0, 0] = 1.0
 
 
 def test_vertices_within_the_hull_and_cones_of_two_equal_radii_do_no_harm():

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from cagepose.errors import Key
 from cagepose.model.checks import FloatArray, ProblemList, finite_array
 from cagepose.model.pose import Pose
-from cagepose.model.shapes import Shape
+from cagepose.model.shapes import Shape, worked_out_once
 from cagepose.model.tolerances import DISTANCE_OUTSIDE
 from cagepose.model.volume import BOX_SIGNS
 
@@ -56,6 +56,7 @@ class Box(Shape):
     def _measures(self) -> str:
         return " x ".join(f"{length:.6g}" for length in self.size_m.tolist()) + " m"
 
+    @worked_out_once
     def corners_object(self) -> FloatArray:
         """The eight corners in the object's frame, (8, 3), metres."""
         return self.pose_object_box.transform(BOX_SIGNS * self.size_m / 2.0)
@@ -63,6 +64,7 @@ class Box(Shape):
     def nodes_body(self) -> FloatArray:
         return self.corners_object()
 
+    @worked_out_once
     def limits_m(self) -> FloatArray:
         corners = self.corners_object()
         return np.array([corners.min(axis=0), corners.max(axis=0)])

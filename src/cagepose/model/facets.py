@@ -15,7 +15,7 @@ from cagepose.errors import Key
 from cagepose.model.checks import FloatArray, ProblemList, finite_array
 from cagepose.model.near_pairs import near_pairs
 from cagepose.model.pose import Pose
-from cagepose.model.shapes import Shape, set_lengths
+from cagepose.model.shapes import Shape, set_lengths, worked_out_once
 from cagepose.model.sides import IntArray, open_sides
 from cagepose.model.surfaces import Surface, check_on_surfaces, checked_surfaces
 from cagepose.model.tolerances import DISTANCE_OUTSIDE
@@ -122,6 +122,7 @@ class Facets(Shape):
         """Whether some triangles stand for what is round."""
         return any(surface.is_round for surface in self.surfaces)
 
+    @worked_out_once
     def nodes_body(self) -> FloatArray:
         return self.pose_body_shape.transform(self.vertices_m)
 

@@ -20,6 +20,8 @@ from cagepose.model.tolerances import DISTANCE_OF_FACE
 
 CORNERS_OF_CIRCLE = 64
 """Corners of the polygon around a circle that stands for it where a hole is looked for within a part."""
+RING = np.array([(math.cos(t), math.sin(t), 0.0) for t in np.linspace(0.0, 2.0 * math.pi, CORNERS_OF_CIRCLE + 1)[:-1]])
+"""Points of a circle that stand for all of them, (n, 3)."""
 RADII_OF_SAMPLES = (0.0, 0.5, 1.0)
 """In radii of the hole. Circles of points lie throughout a hole at these."""
 HEIGHTS_BETWEEN = 16
@@ -226,9 +228,7 @@ class Hole(Turned):
             problems.add(path, f"{found}; move it to the face (its axis z points out of the part)")
 
     def _ring(self, height: float, radius: float) -> FloatArray:
-        angles = 2.0 * math.pi * np.arange(CORNERS_OF_CIRCLE) / CORNERS_OF_CIRCLE
-        ring = np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(CORNERS_OF_CIRCLE, height)], axis=1)
-        return self.pose_body_shape.transform(ring)
+        return self.pose_body_shape.transform(RING * (radius, radius, 1.0) + (0.0, 0.0, height))
 
 
 def _is_bar_across(part: Shape, axis: FloatArray) -> bool:

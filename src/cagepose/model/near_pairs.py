@@ -14,7 +14,7 @@ from cagepose.model.checks import FloatArray
 
 IntArray = NDArray[np.intp]
 
-FEW = 32
+FEW = 64
 """So many things are all compared with each other: quicker than to halve them."""
 
 

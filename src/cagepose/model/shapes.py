@@ -8,10 +8,10 @@ what a straight line makes that turns about the shape's z axis (cylinder, cone, 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Annotated, ClassVar, Self
+from functools import cached_property, wraps
+from typing import Annotated, ClassVar, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +21,25 @@ from cagepose.model.checks import FloatArray, ProblemList, check_kind, check_tex
 from cagepose.model.hull import Hull, hull_of
 from cagepose.model.pose import Pose
 from cagepose.model.tolerances import DISTANCE_OUTSIDE
+
+Of = TypeVar("Of", bound="Shape")
+KNOWN = "_known"
+"""Where a shape keeps what was worked out of it; one that is moved begins anew."""
+
+
+def worked_out_once(method: Callable[[Of], FloatArray]) -> Callable[[Of], FloatArray]:
+    """Keep what a shape, which never changes, says of its place; the array cannot be written to."""
+    name = method.__name__
+
+    @wraps(method)
+    def kept(shape: Of) -> FloatArray:
+        known: dict[str, FloatArray] = shape.__dict__.setdefault(KNOWN, {})
+        if name not in known:
+            known[name] = method(shape)
+            known[name].setflags(write=False)
+        return known[name]
+
+    return kept
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -82,6 +101,7 @@ class Shape(ABC):
         heights: FloatArray = (directions_body @ self.nodes_body().T).max(axis=1)
         return heights
 
+    @worked_out_once
     def limits_m(self) -> FloatArray:
         """Return the lowest and the highest coordinates of the shape in its body's frame, (2, 3), metres."""
         ends: FloatArray = np.array([-self.heights_m(-np.eye(3)), self.heights_m(np.eye(3))])
@@ -112,6 +132,7 @@ class Shape(ABC):
     def _with(self, **changes: object) -> Self:
         other = object.__new__(type(self))
         other.__dict__.update(self.__dict__, **changes)
+        other.__dict__.pop(KNOWN, None)
         return other
 
 
@@ -125,6 +146,7 @@ class Rounded(Shape):
     def core(self) -> FloatArray:
         """The points in the shape's own frame, (n, 3), metres."""
 
+    @worked_out_once
     def nodes_body(self) -> FloatArray:
         return self.pose_body_shape.transform(self.core())
 
@@ -156,6 +178,7 @@ class Turned(Shape):
     def rims(self) -> tuple[tuple[float, float], ...]:
         """Height z and radius of each end, from below, metres; a radius of zero is a tip."""
 
+    @worked_out_once
     def nodes_body(self) -> FloatArray:
         return self.pose_body_shape.transform(np.array([(0.0, 0.0, height) for height, _ in self.rims]))
 

@@ -65,7 +65,7 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
         elif isinstance(part, Shape) and (piece := _piece_of(part, number)) is not None:
             polyhedra[number], pieces[number] = part, piece
         else:
-            blocks.append(block_of(_rows_of(part, number), frozenset((number,))))
+            blocks.append(_lone_block(_Placed(_key_of(part), part, number)))
     for group in surface_groups(polyhedra, touch_m):
         members = sorted(group)
         alone = polyhedra[members[0]]
@@ -80,7 +80,7 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
         members = sorted(group)
         if len(members) == 1:
             part = polyhedra[members[0]]
-            blocks.append(_lone_block(_Placed((*part.form, *part.pose_body_shape.key), pieces[members[0]], members[0])))
+            blocks.append(_lone_block(_Placed(_key_of(part), part, members[0])))
         else:
             blocks.append(union_block(union_of([pieces[number] for number in members], touch_m), group))
     return packed([_with_holes(block, every, holes) for block in blocks], every, touch_m)
@@ -88,19 +88,26 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
 
 @dataclass(frozen=True)
 class _Placed:
-    """A sharp polyhedron, its number, and its form and place, by which it is known again."""
+    """A part that is no hole, its number, and its form and place, by which it is known again."""
 
     key: tuple[object, ...]
-    piece: ConvexPiece = field(compare=False)
+    part: Shape | FloatArray = field(compare=False)
     number: int
 
 
-@lru_cache(maxsize=64)
+def _key_of(part: Shape | FloatArray) -> tuple[object, ...]:
+    return (part.tobytes(),) if isinstance(part, np.ndarray) else (*part.form, *part.pose_body_shape.key)
+
+
+@lru_cache(maxsize=256)
 def _lone_block(placed: _Placed) -> Block:
-    """Return the features of a polyhedron that is united with no other. Those of the last ones are remembered: what
-    changes from scene to scene of a study is few of its parts.
+    """Return the features of a part that is united with no other. Those of the last ones are remembered: what changes
+    from scene to scene of a study is few of its parts.
     """
-    return union_block(boundary_apart([placed.piece]), frozenset((placed.number,)))
+    own, piece = frozenset((placed.number,)), _piece_of(placed.part, placed.number)
+    if piece is None:
+        return block_of(_rows_of(placed.part, placed.number), own)
+    return union_block(boundary_apart([piece]), own)
 
 
 def _with_holes(block: Block, parts: Sequence[Shape | FloatArray], holes: Sequence[Hole]) -> Block:

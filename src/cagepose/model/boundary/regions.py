@@ -37,9 +37,9 @@ def faces_of(planes: Rows, arcs: Rows, ends: NDArray[np.int64]) -> tuple[Faces, 
     arc = arcs[which]
     normals, inward = arc["normals"][np.arange(len(arc)), side], arc["inward"][np.arange(len(arc)), side]
     oriented = 2 * arc["planes"][np.arange(len(arc)), side] + (arc["sides"][np.arange(len(arc)), side] < 0.0)
-    keys = np.stack([oriented, arc["parts"][np.arange(len(arc)), side]], axis=1)
-    regions, first, face = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    face = face.reshape(-1)
+    parts = arc["parts"][np.arange(len(arc)), side]
+    keys = oriented * (1 + parts.max(initial=0)) + parts
+    _, first, face = np.unique(keys, return_index=True, return_inverse=True)
     is_along = np.einsum("ij,ij->i", np.cross(inward, normals), arc["direction"]) > 0.0
     forth, back = np.where(is_along, 0, 1), np.where(is_along, 1, 0)
     borders = np.zeros(len(arc), dtype_of(Border))
@@ -51,7 +51,7 @@ def faces_of(planes: Rows, arcs: Rows, ends: NDArray[np.int64]) -> tuple[Faces, 
     borders = borders[np.argsort(face, kind="stable")]
     loops = np.zeros(len(borders), dtype_of(Loop))
     n_loops, n_open = find_loops(normals[first], borders, loops)
-    oriented, parts = regions.T
+    oriented, parts = oriented[first], parts[first]
     offsets = planes["offset"][oriented // 2] * np.where(oriented % 2, -1.0, 1.0)
     return regions_of(FacePlanes(normals[first], offsets, oriented, parts), borders, loops[:n_loops]), n_open
 

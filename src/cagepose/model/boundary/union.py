@@ -94,8 +94,7 @@ def _shortest_at(places: FloatArray, edges: Edges) -> FloatArray:
     lengths = np.linalg.norm(edges.ends_m - edges.starts_m, axis=1)
     everywhere = np.concatenate([places, edges.starts_m, edges.ends_m])
     slack = SAME_END_OF_LENGTH * float(lengths.min(initial=0.0))
-    pairs = near_pairs(everywhere - slack, everywhere + slack)
-    ends = pairs[(pairs[:, 0] < len(places)) & (pairs[:, 1] >= len(places))]
+    ends = near_pairs(everywhere - slack, everywhere + slack, between=len(places))
     shortest = np.full(len(places), np.inf)
     np.minimum.at(shortest, ends[:, 0], np.tile(lengths, 2)[ends[:, 1] - len(places)])
     return shortest
