@@ -69,7 +69,7 @@ def play_command(
     from cagepose.studies.play import play
     from cagepose.studies.play_rest import play_rests
 
-    is_pushed = seated or scene_file.scene.has_other_shapes
+    is_pushed = seated or scene_file.scene.has_other_shapes or scene_file.scene.planar is not None
     if is_pushed:
         tell("pushing the part each way until it stops (seconds; round shapes take longest)")
     try:
@@ -85,7 +85,7 @@ def play_command(
         return 2
     if (is_pushed or found.verdict in ("not certified", "escapes")) and sys.stderr.isatty():
         sys.stderr.write(ERASE_LINE)
-    rests = () if seated or scene_file.scene.has_other_shapes else play_rests(scene_file.scene)
+    rests = () if is_pushed else play_rests(scene_file.scene)
     if json:
         from cagepose.files.play_document import play_document
         from cagepose.files.write import json_text

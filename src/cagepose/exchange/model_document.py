@@ -28,7 +28,7 @@ from cagepose.model.wording import few
 Data = dict[str, Any]
 """What is known of a geom, or of a part of a scene file."""
 
-KEPT = ("method", "metric", "tolerances")
+KEPT = ("method", "metric", "planar", "tolerances")
 MOST_GEOMS = 2_000
 """Of the object and the cage together: all pairs of them are looked at."""
 SHOWN = 12

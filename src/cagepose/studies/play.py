@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike
 
 from cagepose.errors import Problem, SceneError
 from cagepose.model.checks import FloatArray, expect, finite_array, unit_vector
+from cagepose.model.planar import held_freedoms
 from cagepose.model.scene import FARTHEST_START, Scene, millimetres
 from cagepose.studies.bounds import Bounds
 from cagepose.studies.cage_verdict import CageVerdict, is_caged, judge_cage, why_not_caged
 from cagepose.studies.inner_cage import inner_scene
-from cagepose.studies.play_frame import FREEDOMS, PlayFrame, range_goals
+from cagepose.studies.play_frame import FREEDOMS, N_LENGTHS, PlayFrame, range_goals
 from cagepose.studies.play_result import Play, PlayEnd, PlayRange, PointPlay
 from cagepose.studies.polytope_play import MOST_STARTS, PolytopePlay
 from cagepose.studies.pushed_play import PushedPlay
@@ -51,7 +52,7 @@ def play(
     at
         Points of the object, in its frame, metres.
     directions
-        In the cage's frame; none: x, y and z. Each goes with each point.
+        In the cage's frame; none: x, y and z, of those the plane's where the scene has one. Each goes with each point.
     seated
         Name of a phase: how far the object can move from where the scene's run comes to rest in it, while its load goes
         on, pushed a ten-thousandth as hard and without friction. None: from the start, without a load.
@@ -68,18 +69,20 @@ def play(
     """
     expect(scene, Scene, "scene")
     points = [_point_near(scene, point) for point in at]
-    along = [unit_vector(direction, "direction") for direction in (directions if len(directions) else np.eye(3))]
+    is_free = held_freedoms(scene.planar) == 0.0
+    axes = np.eye(N_LENGTHS)[is_free[:N_LENGTHS]]
+    along = [unit_vector(direction, "direction") for direction in (directions if len(directions) else axes)]
     shifts = [(point, direction) for point in points for direction in along]
     if seated is not None:
         pushed = PushedPlay(scene, seated_pushes(scene, seated), shifts)
         found = _Found(None, pushed.ranges(), pushed.analysis_s, 0.0)
-    elif scene.has_other_shapes:
+    elif scene.has_other_shapes or scene.planar is not None:
         found = _of_shapes(scene, shifts, search_s, progress)
     else:
         found = _of_boxes_among_points(scene, shifts, search_s, progress)
     return Play(
         scene,
-        {name: PlayRange(*found.ranges[index]) for index, name in enumerate(FREEDOMS)},
+        {name: PlayRange(*found.ranges[index]) for index, name in enumerate(FREEDOMS) if is_free[index]},
         tuple(PointPlay(*shift, *ends) for shift, ends in zip(shifts, found.ranges[len(FREEDOMS) :], strict=True)),
         found.cage,
         seated,

@@ -49,7 +49,7 @@ class Clearance:
 
 def limiting_clearances(scene: Scene, frame: PlayFrame, goal: Goal, extreme: Extreme) -> tuple[Clearance, ...]:
     """Return what limits a goal at the extreme that was found for it, the gap that is best to close first."""
-    work = empty_play_workspace(frame.geometry)
+    work = empty_play_workspace(frame.geometry, frame.held)
     gaps = empty_rows(LimitingGap, len(work.faces))
     n_gaps = find_limiting_gaps(frame.geometry, goal, extreme, gaps, work)
     per_metre = 1.0 if goal.kind == SHIFT else 1.0 / frame.length_m
