@@ -53,6 +53,7 @@ def mjcf_text(assembly: Assembly, phases: Sequence[PhaseRun] = ()) -> str:
         for solid in solids:
             body.append(_geom(scene, name, solid, assets))
     root.extend([assets, world] if len(assets) else [world])
+    joints.hold(root)
     if phases:
         keys = SubElement(root, "keyframe")
         for phase in phases:

@@ -124,7 +124,9 @@ class _Search:
         if len(self.used) != len(columns):
             return False
         apart = np.linalg.norm(in_kernels[self.used] - columns, axis=2)
-        if (apart > SAME_LOAD * np.linalg.norm(self.columns, axis=2)).any() or np.linalg.norm(load / self.size - whole) > SAME_LOAD:
+        if (apart > SAME_LOAD * np.linalg.norm(self.columns, axis=2)).any() or np.linalg.norm(
+            load / self.size - whole
+        ) > SAME_LOAD:
             return False
         if is_strong:
             in_kernels[self.used] = columns
