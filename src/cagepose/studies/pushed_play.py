@@ -172,7 +172,7 @@ class PushedPlay:
 
     def _clearances(self, place: int, sign: float, pushed: Pushed) -> tuple[Clearance, ...]:
         push = self._pushes.wrench(self._freedoms[place], sign, pushed.pose)
-        return pressed_clearances(self.scene, pushed.pose, pushed.contacts, push)
+        return pressed_clearances(self.scene, pushed.pose, pushed.contacts, push, self._pushes.held)
 
     def free_directions(self) -> tuple[str, ...]:
         """``x``: free both ways; ``+x``: free one way."""
