@@ -239,8 +239,8 @@ class Pushes:
             action["arm_object"] = self.start.rotation.T @ self._cage.rotation[:, 0]
 
 
-def unseated(scene: Scene, held: FloatArray) -> Pushes:
-    """Return pushes from the scene's start, with nothing beside them, of which some freedoms are held, (6,)."""
+def unseated(scene: Scene, held: FloatArray | None = None) -> Pushes:
+    """Return pushes from the scene's start, with nothing beside them; ``held`` as for `Pushes`."""
     return Pushes(scene, scene.object.pose_world_object, np.zeros(0, dtype_of(Action)), held=held)
 
 
