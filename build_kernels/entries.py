@@ -128,7 +128,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield reach, (program, empty_cone_rays(np.zeros((1, 3, 6)), numbers, 1), 0.0)
     yield shortest_inside, (rows, bounds, empty_system(1), empty_record(PassiveSet), np.zeros(6))
     yield extents, (rows, bounds, program, np.zeros(6), np.zeros(6))
-    play_work, goals, extremes = empty_play_workspace(boxes), empty_rows(Goal, 1), empty_rows(Extreme, 1)
+    play_work, goals, extremes = empty_play_workspace(boxes, np.zeros(6)), empty_rows(Goal, 1), empty_rows(Extreme, 1)
     yield write_start, (boxes, play_work)
     yield find_play, (boxes, goals, extremes, play_work)
     yield find_play_from, (boxes, goals, extremes, vectors, quaternions, play_work)

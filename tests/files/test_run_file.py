@@ -96,6 +96,7 @@ def test_a_run_that_an_earlier_version_saved_is_read_without_loss(path: Path) ->
         assert (phase.pop("drive"), phase.pop("press")) == (None, None)
         assert {event.pop("share") for event in phase["events"]} == {0.0}
     assert record["scene"].pop("friction_of") == {}  # so are these
+    assert record["scene"].pop("planar") is None
     for key in ("shapes", "holes", "cage_shapes", "cage_holes", "cage_bodies", "left_out"):
         assert record["scene"].pop(key) == []
     for load in record["scene"]["loads"]:

@@ -177,7 +177,7 @@ def test_set_can_mend_a_broken_file(sample_text: str) -> None:
         ("object.mass=!x 1", "has the tag !x; remove it (scene files have no tags)"),
         ("object.mass=true", "object.mass: is true; give a number"),
         ("objct.mass=1", "objct: is no known key; did you mean object? known keys: name, units, parameters, object,"
-                         " cage, loads, friction, method, metric, tolerances, adjustable, left_out"),
+                         " cage, loads, friction, method, metric, planar, tolerances, adjustable, left_out"),
         ("object.pose.position[2]=3", "cage.points.C1: starts 2 mm inside object.boxes[0] (box1); move the point out or"
                                       " move the object's start pose"),
         ("cage.points[2]=[4, -4, 0]", "cage.points.C3: lies 0 mm from C2, so they are one point; remove or move one"),

@@ -48,7 +48,7 @@ def test_all_twelve_programs_of_random_caged_scenes_agree_with_highs(cases):
     n_bounded, n_scenes = 0, cases(40, 250)
     for _ in range(n_scenes):
         frame = PlayFrame(caged(rng))
-        work = empty_play_workspace(frame.geometry)
+        work = empty_play_workspace(frame.geometry, frame.held)
         write_start(frame.geometry, work)
         n = len(work.faces)
         for objective in np.vstack([np.eye(6), -np.eye(6)]):

@@ -27,6 +27,13 @@ def play_command(
             allow_leading_hyphen=True,
         ),
     ] = (),
+    hold: Annotated[
+        str | None,
+        Parameter(
+            help="Freedoms to hold, such as x,roll,yaw: any of x, y and z; of roll, pitch and yaw two or all three.",
+            show_default=False,
+        ),
+    ] = None,
     seated: Annotated[
         bool,
         Switch,
@@ -69,7 +76,8 @@ def play_command(
     from cagepose.studies.play import play
     from cagepose.studies.play_rest import play_rests
 
-    is_pushed = seated or scene_file.scene.has_other_shapes
+    held = [] if hold is None else [name.strip() for name in hold.split(",")]
+    is_pushed = seated or bool(held) or scene_file.scene.has_other_shapes or scene_file.scene.planar is not None
     if is_pushed:
         tell("pushing the part each way until it stops (seconds; round shapes take longest)")
     try:
@@ -77,6 +85,7 @@ def play_command(
             scene_file.scene,
             [to_metres(point, scene_file.length_unit) for point in points],
             along,
+            hold=held,
             seated=(phase or scene_file.scene.loads[-1].name) if seated else None,
             progress=_show_search if sys.stderr.isatty() else None,
         )
@@ -85,7 +94,7 @@ def play_command(
         return 2
     if (is_pushed or found.verdict in ("not certified", "escapes")) and sys.stderr.isatty():
         sys.stderr.write(ERASE_LINE)
-    rests = () if seated or scene_file.scene.has_other_shapes else play_rests(scene_file.scene)
+    rests = () if is_pushed else play_rests(scene_file.scene)
     if json:
         from cagepose.files.play_document import play_document
         from cagepose.files.write import json_text

@@ -64,12 +64,13 @@ def print_play(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> None:
     why = plain_table(*columns)
     for limit in limits:
         why.add_row(*map(Text, limit[: len(columns)]))
+    held = f"; held: {' '.join(play.held)}" if play.held else ""
     if play.cage is None:
         print_all(
-            Text(f"{play.scene.name}: play from the rest of {play.seated}, in the cage's frame"), "", Text(SEATED)
+            Text(f"{play.scene.name}: play from the rest of {play.seated}, in the cage's frame{held}"), "", Text(SEATED)
         )
     else:
-        print_all(Text(f"{play.scene.name}: play from the start pose, in the cage's frame"), "")
+        print_all(Text(f"{play.scene.name}: play from the start pose, in the cage's frame{held}"), "")
         _print_cage(play.cage, words)
     is_proven = any(end.certified is not None for _, _, low, high in rows for end in (low, high))
     print_all("", table, "", *_legend(play, words), Text(MEANING if is_proven else MEANING_WITHOUT_PROOF), "")

@@ -15,7 +15,7 @@ from cagepose.model.scene import Scene
 from cagepose.model.wording import few
 
 NOTE_VERSION = 1
-KEPT = ("name", "method", "metric", "tolerances", "left_out")
+KEPT = ("name", "method", "metric", "planar", "tolerances", "left_out")
 """Keys of the scene file that stand in the note as they are."""
 
 

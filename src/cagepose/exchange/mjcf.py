@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cagepose.exchange.beside import beside_text, not_kept
+from cagepose.exchange.joints import ObjectJoints
 from cagepose.exchange.solids import Assembly, Primitive, Solid
 from cagepose.files.write import MADE_BY
 from cagepose.model.box import Box
@@ -45,17 +46,18 @@ def mjcf_text(assembly: Assembly, phases: Sequence[PhaseRun] = ()) -> str:
     assets, world = Element("asset"), Element("worldbody")
     cage = SubElement(world, "body", {"name": "cage", **_place(scene.cage.pose_world_cage)})
     held = SubElement(world, "body", {"name": "object", **_place(scene.object.pose_world_object)})
-    SubElement(held, "freejoint", name="object")
+    joints = ObjectJoints(scene)
+    joints.add_to(held, numbers)
     SubElement(held, "inertial", _inertial(scene.object))
     for name, body, solids in (("cage", cage, assembly.cage), ("object", held, assembly.object)):
         for solid in solids:
             body.append(_geom(scene, name, solid, assets))
     root.extend([assets, world] if len(assets) else [world])
+    joints.hold(root)
     if phases:
         keys = SubElement(root, "keyframe")
         for phase in phases:
-            pose = phase.pose
-            SubElement(keys, "key", name=phase.name, qpos=numbers([*pose.position_m, *pose.quaternion_wxyz]))
+            SubElement(keys, "key", name=phase.name, qpos=numbers(joints.coordinates(phase.pose)))
     indent(root)
     return str(tostring(root, encoding="unicode")) + "\n"
 

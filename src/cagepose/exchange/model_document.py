@@ -28,7 +28,9 @@ from cagepose.model.wording import few
 Data = dict[str, Any]
 """What is known of a geom, or of a part of a scene file."""
 
-KEPT = ("method", "metric", "tolerances")
+KEPT = ("method", "metric", "planar", "tolerances")
+OBJECT = "object"
+"""The object's body in files that we write."""
 MOST_GEOMS = 2_000
 """Of the object and the cage together: all pairs of them are looked at."""
 SHOWN = 12
@@ -111,6 +113,8 @@ class _Reader:
     def document(self, object_name: str | None, cage_names: Sequence[str]) -> Data:
         """Return the scene file's data."""
         bodies, beside = self.bodies, self.beside
+        if object_name is None and "planar" in beside:
+            object_name = OBJECT  # of our own files; slides and a hinge hold it
         held = bodies.free() if object_name is None else bodies.named(object_name)
         of_object = bodies.below([held])
         of_cage = bodies.below([bodies.named(name) for name in cage_names] or [WORLD_BODY]) - of_object

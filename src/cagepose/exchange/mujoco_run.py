@@ -15,6 +15,7 @@ import numpy as np
 
 from cagepose.errors import CageposeError
 from cagepose.exchange.extra import mujoco
+from cagepose.exchange.joints import ObjectJoints
 from cagepose.exchange.mjcf import mjcf_text
 from cagepose.exchange.mujoco_settings import MujocoSettings
 from cagepose.exchange.settle import Settled, windows_until_quiet
@@ -74,7 +75,7 @@ class MujocoScene:
 
     def __init__(self, assembly: Assembly, points_object_m: FloatArray) -> None:
         library = mujoco()
-        self._scene, self._points = assembly.scene, points_object_m
+        self._scene, self._points, self._joints = assembly.scene, points_object_m, ObjectJoints(assembly.scene)
         description = library.MjSpec.from_string(mjcf_text(assembly))
         description.memory = MEMORY_BYTES
         self._model = description.compile()
@@ -96,7 +97,7 @@ class MujocoScene:
             MuJoCo's pose is no longer a number, or it has no room for all contacts.
         """
         data, scene = self._data, self._scene
-        data.qpos[:3], data.qpos[3:7] = start.position_m, start.quaternion_wxyz
+        data.qpos[:] = self._joints.coordinates(start)
         data.qvel[:], data.qacc_warmstart[:] = 0.0, 0.0
         mass = float(self._model.body_mass[self._body])
         whole = mass * FALL_OF_SIZE * scene.size_m / load_size(scene, phase, start)
@@ -122,14 +123,14 @@ class MujocoScene:
     def _pose(self) -> Pose:
         if not np.isfinite(self._data.qpos).all():
             raise CageposeError("MuJoCo's pose is no longer a number: this scene is too stiff for its time steps")
-        return Pose(self._data.qpos[:3], self._data.qpos[3:7])
+        return self._joints.pose(self._data.qpos)
 
     def _drag(self, mass: float, force: FloatArray, moment: FloatArray) -> None:
         """Apply force and moment at the centre of gravity, less drag."""
         data, size_m = self._data, self._scene.size_m
         turn = np.reshape(data.xmat[self._body], (3, 3))
-        gyration, spin = self._scene.object.gyration_m2, data.qvel[3:6]
-        speed = data.qvel[:3] + np.cross(turn @ spin, turn @ self._scene.object.center_of_gravity_m)
+        gyration, (velocity, spin) = self._scene.object.gyration_m2, self._joints.speeds(data.qvel, turn)
+        speed = velocity + np.cross(turn @ spin, turn @ self._scene.object.center_of_gravity_m)
         inertial = gyration @ spin
         fast = float(np.sqrt(speed @ speed + spin @ inertial))
         rate = SETTINGS.damping_per_s + FALL_OF_SIZE / SPEED_OF_SIZE**2 * fast / size_m

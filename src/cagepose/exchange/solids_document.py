@@ -92,7 +92,7 @@ def solids_document(
     found |= kept_friction(note, elements)
     lost = [one for one in note["friction"]["of"] if not any(is_of(name, one) for name in elements)]
     notes += [f"friction of {few(lost)} is lost, as nothing there has the name"] if lost else []
-    kept = {key: note[key] for key in ("method", "metric", "tolerances") if key in note}
+    kept = {key: note[key] for key in ("method", "metric", "planar", "tolerances") if key in note}
     return SceneData(found | kept, notes, tuple(parts))
 
 

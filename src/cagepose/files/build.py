@@ -84,6 +84,7 @@ def build_scene(
         friction_of=friction_of,
         method=model.method,
         metric=model.metric,
+        planar=model.planar,
         tolerances=tolerances,
         adjustable=[
             Adjustable(name, entry.key, entry.range[0], entry.range[1])

@@ -14,7 +14,7 @@ from cagepose.model.checks import is_number
 if TYPE_CHECKING:
     from cagepose.files.expression import Expression
 
-TEXT_KEYS = {"name", "file", "key", "method", "metric"}
+TEXT_KEYS = {"name", "file", "key", "method", "metric", "planar"}
 """What stands at these is text, and no expression, whatever it begins with; but a parameter may have such a name."""
 LENGTH_UNIT, NAMES_OF_PARTS, NAME_OF_BODY = ("units", "length"), ("hole", "in"), ("springs", "of")
 """Text, too, of keys that elsewhere hold numbers; the second with an index behind it, or without, the third with one

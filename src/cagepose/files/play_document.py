@@ -32,6 +32,7 @@ def play_document(play: Play, rests: Sequence[PlayRest], unit: LengthUnit) -> di
             }
             for point in play.points
         ],
+        "held": list(play.held),
         "seated": play.seated,
         "cage": None if cage is None else _cage(cage, unit),
         "rests": [_rest(rest, unit) for rest in rests],

@@ -74,7 +74,7 @@ class SceneWriter(Measures):
         friction = {"coefficient": scene.friction_coefficient, "of": self.friction_of or None}
         if given := _given(friction):
             found["friction"] = given
-        found |= _given({"method": scene.method, "metric": scene.metric})
+        found |= _given({"method": scene.method, "metric": scene.metric, "planar": scene.planar})
         touch, band_rad = scene.tolerances.touch, scene.tolerances.grazing_band_rad
         if touch != TOUCH_DEFAULT or band_rad != GRAZING_BAND_DEFAULT_RAD:
             found["tolerances"] = {"touch": touch, "grazing_band_deg": self.angle(band_rad)}

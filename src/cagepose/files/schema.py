@@ -35,6 +35,7 @@ from cagepose.files.schema_driven import Drives, Presses, StopModel
 from cagepose.files.schema_shapes import CoefficientModel, Shapes, either
 from cagepose.files.units import LengthUnit
 from cagepose.model.methods import DEFAULT_METHOD, DEFAULT_METRIC, METHODS, NO_SLIP_ANGLE_DEFAULT_RAD, Metric
+from cagepose.model.planar import Planar
 from cagepose.model.tolerances import TOUCH_DEFAULT, TOUCH_GREATEST, TOUCH_LEAST
 
 _BOX = {"size": [10, 20, 30], "position": [0, 0, 0]}
@@ -280,6 +281,11 @@ class SceneModel(Mapping):
         None,
         description="What decides how the object starts to move (quasistatic): its inertia (release), or the same"
         f" resistance in all directions (drag); left out: {DEFAULT_METRIC}.",
+    )
+    planar: Planar | None = Field(
+        None,
+        description="The plane of the world that the object moves in (quasistatic): it travels along these two axes and"
+        " turns about the third one; left out: it has all six freedoms.",
     )
     tolerances: TolerancesModel | None = Field(None, description="Left out: the defaults.")
     adjustable: dict[Name, AdjustableModel] | None = Field(None, description="Named numbers for sliders and studies.")

@@ -26,7 +26,7 @@ STAND_INS: dict[str, Any] = {
     "loads": [{"name": "weight", "gravity": [0.0, 0.0, -1.0]}],
 }
 """What a scene must have, in the place of what is wrong with it as a whole."""
-APART = ("name", "loads", "friction", "method", "metric", "adjustable", "left_out")
+APART = ("name", "loads", "friction", "method", "metric", "planar", "adjustable", "left_out")
 """Where one of these is wrong, what object and cage are together is known all the same."""
 PARTS_OF_LOADS = ("forces", "moments", "springs", "drive", "press")
 """What there may be several of in a load, each by itself."""

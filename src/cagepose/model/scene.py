@@ -35,6 +35,7 @@ from cagepose.model.load import Load
 from cagepose.model.methods import METHODS, Metric
 from cagepose.model.naming import place_of
 from cagepose.model.parts import Object
+from cagepose.model.planar import AXES, LEAST_TILT, Planar, normal_axis, tilt
 from cagepose.model.seams import Seams
 from cagepose.model.shapes import Shape
 from cagepose.model.tolerances import TOUCH_GREATEST, Tolerances
@@ -94,6 +95,9 @@ class Scene:
         contact has that of the cage's, else that of the object's, else ``friction_coefficient``.
     method, metric
         How to run it; None: the default.
+    planar
+        The plane of the world that the object moves in, as two axes: it travels along these and turns about the third
+        one; None: it has all six freedoms.
     tolerances
         What counts as touching and as grazing.
     left_out
@@ -119,6 +123,7 @@ class Scene:
     friction_of: dict[str, float]
     method: str | None
     metric: Metric | None
+    planar: Planar | None
     tolerances: Tolerances
     adjustable: tuple[Adjustable, ...]
     left_out: tuple[str, ...]
@@ -139,6 +144,7 @@ class Scene:
         friction_of: Mapping[str, float] | None = None,
         method: str | None = None,
         metric: Metric | None = None,
+        planar: Planar | None = None,
         tolerances: Tolerances | None = None,
         adjustable: Iterable[Adjustable] = (),
         left_out: Iterable[str] = (),
@@ -150,7 +156,8 @@ class Scene:
             Arguments of other classes, no loads, a phase name used twice, a negative friction coefficient, or one of
             what is neither in the cage nor in the object, cage points on top of each other, a cage point inside a box
             of the object at the start, a start too far from the cage, a box or shape thinner than what the touch
-            tolerance can tell apart, or a drive or a spring of a body that the cage does not have.
+            tolerance can tell apart, a drive or a spring of a body that the cage does not have, a plane that the cage
+            is tilted out of, or one in a scene whose cage is driven or presses.
         """
         tolerances = Tolerances() if tolerances is None else tolerances
         problems = ProblemList()
@@ -167,6 +174,8 @@ class Scene:
             check_choice(method, METHODS, "method", problems)
         if metric is not None:
             check_choice(metric, get_args(Metric), "metric", problems)
+        if planar is not None:
+            check_choice(planar, get_args(Planar), "planar", problems)
         problems.raise_if_any()
         if not loads:
             problems.add(("loads",), "is empty; give at least one phase with gravity or a force")
@@ -189,6 +198,8 @@ class Scene:
         else:
             _check_points_outside(object, cage, boxes, touch_m, size_m, problems)
         check_driven(cage, loads, problems)
+        if planar is not None:
+            _check_planar(planar, cage, loads, problems)
         _check_loads(object, cage, loads, touch_m, problems)
         problems.raise_if_any()
         named = object.boxes
@@ -201,6 +212,7 @@ class Scene:
             ("friction_of", {name: float(coefficient) for name, coefficient in friction_of.items()}),
             ("method", method),
             ("metric", metric),
+            ("planar", planar),
             ("tolerances", tolerances),
             ("adjustable", adjustable),
             ("left_out", left_out),
@@ -292,6 +304,23 @@ def _check_friction_of(friction_of: Mapping[str, float], held: Object, cage: Cag
             problems.add(at, "is neither in the cage nor in the object; give the name of a point, a box or a shape")
         if not (is_finite(coefficient) and coefficient >= 0.0):
             problems.add(at, f"is {coefficient!r}; give a finite coefficient, zero or above")
+
+
+def _check_planar(planar: Planar, cage: Cage, loads: tuple[Load, ...], problems: ProblemList) -> None:
+    for index, load in enumerate(loads):
+        for key, verb in (("drive", "drives"), ("press", "presses")):
+            if getattr(load, key):
+                problems.add(
+                    ("loads", index, key),
+                    f"{load.name!r} {verb} a body, which is not known in a plane; leave planar out of the scene",
+                )
+    tilt_rad = tilt(planar, cage.pose_world_cage)
+    if tilt_rad > LEAST_TILT:
+        problems.add(
+            ("cage", "pose"),
+            f"tilts the cage by {math.degrees(tilt_rad):.3g} degrees out of the plane {planar};"
+            f" turn it about {AXES[normal_axis(planar)]} alone, or leave planar out of the scene",
+        )
 
 
 def _check_thickness(held: Object, cage: Cage, touch_m: float, problems: ProblemList) -> None:

@@ -64,6 +64,18 @@ def check_boxes_and_points(scene: Scene, what: str) -> None:
         raise SceneError(problems)
 
 
+def check_all_freedoms(scene: Scene, what: str) -> None:
+    """
+    Raises
+    ------
+    SceneError
+        The scene is one in a plane.
+    """
+    if scene.planar is not None:
+        message = f"is {scene.planar!r}, and {what} knows parts with all six freedoms alone, so far; leave planar out"
+        raise SceneError([Problem(("planar",), message)])
+
+
 class _Placed(NamedTuple):
     """A shape or hole of a scene: where it was given, and the shapes of its body."""
 

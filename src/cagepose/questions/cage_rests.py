@@ -140,6 +140,8 @@ def cage_rests(
     load = scene.loads[number]
     if load.drive or load.press:
         return Unanswered(f"{load.name} drives or presses, so that the cage is not the same at the end")
+    if scene.planar is not None:
+        return Unanswered("starts are drawn in all six freedoms, of which this scene's plane holds three")
     if moved := moved_before(scene, number):
         return moved
     alone = scene.but_for(loads=[load])

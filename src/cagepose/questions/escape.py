@@ -106,6 +106,8 @@ def escape_energy(
     weighed = scaled_load(scene, load)
     if play(scene, search_s=0.0).verdict == "caged":
         return EscapeEnergy(load.name, math.inf, math.inf, weighed.in_newtons, (), None, 0, 0)
+    if scene.planar is not None:
+        return Unanswered("a way out is searched in all six freedoms, of which this scene's plane holds three")
     if scene.has_other_shapes:
         return Unanswered(
             "a way out is searched for boxes among points alone, and no proof was found that there is none"

@@ -65,6 +65,8 @@ def critical_gap(
     expect_count(n_motions, "n_motions")
     if not (is_finite(tight) and is_finite(wide)) or tight == wide:
         raise SceneError([Problem(("range",), f"is {tight!r} to {wide!r}; give two different finite numbers")])
+    if scene_at(tight).planar is not None:
+        return Unanswered("ways out are searched in all six freedoms, of which this scene's plane holds three")
     if scene_at(tight).has_other_shapes:
         return Unanswered("ways out are searched for boxes among points alone")
     tried = set[float]()

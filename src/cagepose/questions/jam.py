@@ -86,6 +86,8 @@ def jam(run: Run, phase: str | None = None) -> Jam | Unanswered:
         return Unanswered(f"the drive of {load.name} did not start: it ends as {ended.verdict!r}")
     if not (load.drive or load.pushes):
         return Unanswered(f"{load.name} neither drives nor pushes anything; name a phase with a drive or a force")
+    if run.scene.planar is not None:
+        return Unanswered("it is asked of all six freedoms, of which this scene's plane holds three")
     curve = None if ended.drive is None else ended.drive.curve
     if curve is not None:
         poses = [Pose.from_unit(*place) for place in zip(curve.position_m, curve.quaternion_wxyz, strict=True)]

@@ -9,6 +9,7 @@ from typing import NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from cagepose.errors import Problem, SceneError
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.contact.loads import FIXED_FORCE, SPRING, PhaseLoad
 from cagepose.kernels.native.slots import Slots
@@ -17,6 +18,7 @@ from cagepose.kernels.outcome.endings import INVALID, NOT_RUN, Endings, empty_en
 from cagepose.kernels.outcome.trace import BLOCKED, JAMS, STOPS
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.geometry import sizes_with_points
+from cagepose.model.planar import LEAST_TILT, tilt
 from cagepose.model.pose import Pose, quaternions_of
 from cagepose.model.scene import FARTHEST_START, Scene
 from cagepose.runs.actions import actions_of, cage_middles, spring_ends, tensions_at_zero
@@ -109,6 +111,7 @@ def _run(method: Method, is_stopped: NDArray[np.int64], arguments: list[object],
 def varied_cases(scene: Scene, friction: float, columns: dict[str, FloatArray]) -> Cases:
     """Return the cases of a scene in which columns stand in the place of its own values."""
     base = cases_of(scene, friction)
+    _expect_in_plane(scene, columns.get("cage_euler_zyx"))
     points = _owned(columns.get("points_cage_m", base.points_cage))
     return Cases(
         _owned(columns.get("cage_position_m", base.cage_positions)),
@@ -126,6 +129,22 @@ def varied_cases(scene: Scene, friction: float, columns: dict[str, FloatArray]) 
         _actions(scene, columns),
         base.tolerances,
     )
+
+
+def _expect_in_plane(scene: Scene, cage_euler_zyx: FloatArray | None) -> None:
+    """
+    Raises
+    ------
+    SceneError
+        Cages that are tilted out of the plane of a planar scene.
+    """
+    if scene.planar is None or cage_euler_zyx is None:
+        return
+    tilts = [tilt(scene.planar, Pose(euler_zyx=angles)) for angles in cage_euler_zyx]
+    if max(tilts, default=0.0) > LEAST_TILT:
+        row = int(np.argmax(tilts))
+        message = f"tilts the cage out of the plane {scene.planar} in row {row}; turn it in the plane alone"
+        raise SceneError([Problem(("cage_euler_zyx",), message)])
 
 
 def _owned(array: FloatArray) -> FloatArray:

@@ -19,6 +19,7 @@ from cagepose.kernels.outcome.cases import Cases, Part
 from cagepose.model.boundary.body_parts import shifted
 from cagepose.model.checks import FloatArray, as_vector
 from cagepose.model.methods import DEFAULT_METRIC
+from cagepose.model.planar import held_freedoms
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.actions import Wrench, actions_of
@@ -53,6 +54,7 @@ def body_of(scene: Scene) -> Body:
     # A needle's inertia about its own axis may come out as zero: no body is thinner than a box may be.
     body.radii[:] = np.sqrt(np.maximum(squares, (LEAST_RADIUS_OF_GYRATION * reach_m) ** 2))
     body.reach_m = reach_m
+    body.held[:] = held_freedoms(scene.planar)
     return body
 
 

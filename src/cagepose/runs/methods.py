@@ -141,6 +141,9 @@ def chosen_method(scene: Scene, method: str | None = None) -> Method:
             for key, verb in (("drive", "drives"), ("press", "presses"))
             if getattr(load, key)
         ]
+        if scene.planar is not None:
+            message = f"the {name} method has all six freedoms; leave planar out, or use {DEFAULT_METHOD}"
+            problems.append(Problem(("planar",), message))
         if scene.friction_of:
             message = f"the {name} method has one friction for all; use {DEFAULT_METHOD}"
             problems.append(Problem(("friction", "of"), message))

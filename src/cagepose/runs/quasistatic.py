@@ -19,6 +19,7 @@ from cagepose.runs.run import PhaseRun
 from cagepose.runs.warnings_of_runs import (
     edge_warnings,
     lost_weight_warnings,
+    plane_warnings,
     proof_warnings,
     spring_warnings,
     unrun_warnings,
@@ -56,6 +57,7 @@ def quasistatic_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: flo
     yield from remarks(scene)
     yield from weight_warnings(scene, len(phases))
     yield from lost_weight_warnings(scene, len(phases))
+    yield from plane_warnings(scene, phases)
     for phase in phases:
         yield from edge_warnings(phase)
         yield from _edge_motion_warnings(phase)

@@ -8,6 +8,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from cagepose.kernels.contact.metric import frame_at
 from cagepose.kernels.outcome.records import Outcome
 from cagepose.kernels.outcome.trace import MOTION_NAMES, NONE, TRAVEL
 from cagepose.kernels.stability.proof import (
@@ -41,6 +42,7 @@ WEDGED = "; the contacts can press against each other without a load, as in a we
 STOPPED = "; the rest of the load is held by contacts without play, to second order, by forces of unlimited size"
 CHAINED = "; contacts without play hold each other in turn: the slightest play frees it"
 CLAMPED = "; it seems to depend on contacts that no load keeps closed: opening one of them for a moment may free it"
+IN_PLANE = "; only motions in the plane {} are asked about"
 HELD_BY_NO_FORCES = (PROVEN_MOVES, TOO_MANY_CONTACTS)
 NUMBERS = [
     *("proof", "stability", "residual", "wedged", "is_second_order", "is_chained", "is_clamped"),
@@ -74,7 +76,8 @@ def read_proofs(outcome: Outcome, scene: Scene, ends: Sequence[Pose], shared: Se
                 + (WEDGED if is_open and wedged else "")
                 + (STOPPED if held and second else "")
                 + (CHAINED if held and chained else "")
-                + (CLAMPED if held and clamped else ""),
+                + (CLAMPED if held and clamped else "")
+                + ("" if scene.planar is None else IN_PLANE.format(scene.planar)),
                 residual=residual,
                 needs_friction=held and code != PROVEN_WITHOUT_FRICTION,
                 stability=STABILITY_NAMES[stability] if held else None,
@@ -137,12 +140,10 @@ def _free_motions(phases: Any) -> Iterator[FreeMotion | None]:
 
 def _freedoms(scene: Scene, pose: Pose, undetermined: FloatArray) -> tuple[str, ...]:
     """Name the freedoms, in the cage's frame, that a set of scaled twists (5.3) holds."""
-    body = body_of(scene)
+    frame = frame_at(body_of(scene), pose.as_tuples()[1])
     to_cage = scene.cage.pose_world_cage.rotation.T
-    axes_world = body.axes_object @ pose.rotation.T
-    radius = float(body.radii.max())
-    spins = (undetermined[:, 3:] / body.radii) @ axes_world
-    rows = np.hstack([undetermined[:, :3] @ to_cage.T, radius * spins @ to_cage.T])
+    spins = (undetermined[:, 3:] / np.array(frame.radii)) @ np.array(frame.axes)
+    rows = np.hstack([undetermined[:, :3] @ to_cage.T, frame.extent_m * spins @ to_cage.T])
     basis = np.linalg.svd(rows, full_matrices=False)[2]
     found = [name for k, name in enumerate(("x", "y", "z")) if _is_in_span(basis, np.eye(6)[k])]
     turning = np.linalg.svd(basis[:, 3:], full_matrices=False)

@@ -15,3 +15,5 @@ LEAST_MOMENT = 1e-3
 """Fraction of force times distance. A smaller moment drives no turn (R3)."""
 LEAST_RADIUS_OF_GYRATION = 1e-9
 """In lengths of the object. No radius of gyration is less."""
+ACROSS_PLANE = 1e-6
+"""Fraction of a phase's force. What is less across the plane of a planar scene is not told."""

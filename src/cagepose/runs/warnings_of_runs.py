@@ -8,10 +8,12 @@ from itertools import pairwise
 import numpy as np
 
 from cagepose.kernels.contact.tolerances import LENGTH_OF_NO_SPRING
+from cagepose.model.planar import AXES, normal_axis
 from cagepose.model.scene import Scene
-from cagepose.runs.actions import spring_ends, tensions_at_zero
+from cagepose.runs.actions import spring_ends, tensions_at_zero, wrench_at
 from cagepose.runs.load_scaling import WEIGHT_BESIDE_FORCE, scaled_load
 from cagepose.runs.run import FAILURES, PhaseRun
+from cagepose.runs.tolerances import ACROSS_PLANE
 
 
 def seam_warnings(scene: Scene) -> Iterator[str]:
@@ -34,6 +36,21 @@ def weight_warnings(scene: Scene, n_phases: int) -> Iterator[str]:
             yield (
                 f"{load.name}: gravity and force act together, but mass or magnitude is not given: the force dominates"
                 f" (weight = {WEIGHT_BESIDE_FORCE:g} of it)"
+            )
+
+
+def plane_warnings(scene: Scene, phases: Sequence[PhaseRun]) -> Iterator[str]:
+    """Loads that push across the plane of a planar scene, which has no friction."""
+    if scene.planar is None:
+        return
+    normal = normal_axis(scene.planar)
+    for index, phase in enumerate(phases):
+        force = wrench_at(scene, index, phase.pose).force
+        size = float(np.linalg.norm(force))
+        if size > 0.0 and abs(force[normal]) > ACROSS_PLANE * size:
+            yield (
+                f"{phase.name}: of its force of {size:.4g}, {force[normal]:.4g} acts along {AXES[normal]}, which the"
+                f" plane {scene.planar} carries without friction"
             )
 
 

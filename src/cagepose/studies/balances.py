@@ -7,10 +7,12 @@ from collections.abc import Iterable, Iterator
 from itertools import islice, product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.kernels.algebra.linear_program import OPTIMAL
 from cagepose.kernels.contact.edges import CHOICES_LIMIT
 from cagepose.model.checks import FloatArray
+from cagepose.model.planar import held_freedoms
 from cagepose.runs.actions import wrench_at
 from cagepose.runs.cases import contact_friction
 from cagepose.runs.driven_cage import cage_at_end
@@ -58,7 +60,8 @@ def balances_of(run: Run, phase: int) -> Balances | None:
     load, size_n = _load(run, phase, cones)
     if size_n == 0.0:
         return None
-    found = Balances(contacts, cones, load, size_n, [_counting(len(contacts), choice) for choice in choices])
+    counts = [_counting(len(contacts), choice) for choice in choices]
+    found = Balances(contacts, cones, load, size_n, counts, held_freedoms(run.scene.planar) == 0.0)
     return found if found.are_balanced else None
 
 
@@ -71,15 +74,24 @@ class Balances:
         Those that are listed. The first cones are theirs; others, along arcs, count where a load is to be balanced.
     load, size_n
         The wrench that contacts have to give, (6,), as the cones have it, of length 1, and what it was divided by.
+    is_free
+        Which of the six numbers of a wrench contacts have to give: not those that a plane carries, (6,).
     shares
         Forces of equally stiff contacts, along normal and tangents, (n, 3), in parts of the load.
     """
 
     def __init__(
-        self, contacts: list[Contact], cones: ContactCones, load: FloatArray, size_n: float, counts: list[FloatArray]
+        self,
+        contacts: list[Contact],
+        cones: ContactCones,
+        load: FloatArray,
+        size_n: float,
+        counts: list[FloatArray],
+        is_free: NDArray[np.bool_],
     ) -> None:
         self.all_cones, self.cones = cones, cones.some(np.arange(len(cones.columns)) < len(contacts))
         self.contacts, self.load, self.size_n, self._counts = contacts, load, size_n, counts
+        self.is_free = is_free
         forces = [self._forces(of_choice, load) for of_choice in counts]
         self.balanced = [self.cones.wrench(of_choice) for of_choice in forces]
         self.are_balanced = all(float(np.linalg.norm(load - given)) <= RESIDUAL_OF_NONE for given in self.balanced)
@@ -122,7 +134,8 @@ class Balances:
 
     def shares_beside(self, extra: FloatArray) -> FloatArray:
         """Return the normal forces of equally stiff contacts beside an extra load, (6,), that they balance, (n,)."""
-        found: FloatArray = np.mean([self._forces(counts, self.load - extra)[:, 0] for counts in self._counts], axis=0)
+        load = self.load - self.is_free * extra
+        found: FloatArray = np.mean([self._forces(counts, load)[:, 0] for counts in self._counts], axis=0)
         return found
 
     def ranges(self) -> Iterator[tuple[float, float]]:
@@ -168,13 +181,23 @@ def _cones(run: Run, phase: int, contacts: list[Contact]) -> ContactCones:
     arms = np.array(at).reshape(-1, 3) - center
     of_scene = chosen_method(run.scene, run.method).friction(run.scene)
     friction = [contact_friction(run.scene, of_scene, contact.point, contact.box) for contact in contacts]
-    return contact_cones(normals, arms, np.array(friction))
+    cones = contact_cones(normals, arms, np.array(friction))
+    return cones if run.scene.planar is None else _between_guides(cones, held_freedoms(run.scene.planar))
+
+
+def _between_guides(cones: ContactCones, held: FloatArray) -> ContactCones:
+    """Return the cones of contacts in a plane, and behind them those of what holds it, both ways, without friction."""
+    ways = np.eye(len(held))[held == 1.0]
+    guides = np.zeros((2 * len(ways), 3, len(held)))
+    guides[:, 0] = np.concatenate([ways, -ways])
+    columns = np.concatenate([(1.0 - held) * cones.columns, guides])
+    return cones._replace(columns=columns, friction=np.append(cones.friction, np.zeros(len(guides))))
 
 
 def _load(run: Run, phase: int, cones: ContactCones) -> tuple[FloatArray, float]:
     """Return the wrench that contacts have to give, (6,), and the length that it was divided by."""
     load = wrench_at(run.scene, phase, run.phases[phase].pose, displaced_after(run, phase))
-    wrench = -np.append(load.force, load.moment / cones.length_m)
+    wrench = -np.append(load.force, load.moment / cones.length_m) * (1.0 - held_freedoms(run.scene.planar))
     size = float(np.linalg.norm(wrench))
     return wrench / (size or 1.0), size
 

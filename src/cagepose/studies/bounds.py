@@ -30,7 +30,7 @@ class Bounds:
     """
 
     def __init__(self, frame: PlayFrame, goals: Rows[Goal], touch_m: float) -> None:
-        work = empty_play_workspace(frame.geometry)
+        work = empty_play_workspace(frame.geometry, frame.held)
         self.proof = empty_certificate_workspace(len(work.faces))
         greatest = np.full(len(goals), np.inf)
         started = perf_counter()

@@ -123,8 +123,10 @@ class _Search:
         columns, whole = self.lengths[..., None] * self.columns, self.problem.scaled(self.problem.load)
         if len(self.used) != len(columns):
             return False
-        apart = np.linalg.norm(in_kernels[self.used] - columns, axis=2) / np.linalg.norm(self.columns, axis=2)
-        if apart.max() > SAME_LOAD or np.linalg.norm(load / self.size - whole) > SAME_LOAD:
+        apart = np.linalg.norm(in_kernels[self.used] - columns, axis=2)
+        if (apart > SAME_LOAD * np.linalg.norm(self.columns, axis=2)).any() or np.linalg.norm(
+            load / self.size - whole
+        ) > SAME_LOAD:
             return False
         if is_strong:
             in_kernels[self.used] = columns

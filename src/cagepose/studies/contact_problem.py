@@ -6,13 +6,16 @@ is shared with the kernels. Where other shapes touch is what the kernels find.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from cagepose.kernels.contact.tolerances import ACROSS
 from cagepose.model.checks import FloatArray
 from cagepose.model.methods import DEFAULT_METRIC
+from cagepose.model.planar import normal_axis
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.actions import body_numbers, wrench_at
@@ -65,7 +68,7 @@ class ContactProblem:
 
     def scaled_twist(self, twist: FloatArray) -> FloatArray:
         """Return a twist, velocity of the centre of gravity and angular velocity, (6,), in scaled coordinates."""
-        return np.asarray(np.linalg.solve(self.scale.T, twist))
+        return np.asarray(np.linalg.pinv(self.scale.T) @ twist)
 
 
 def contact_problem(run: Run, phase: int) -> ContactProblem:
@@ -86,6 +89,8 @@ def problem_of(
     """Return the contact problem of what touches at a pose, under the load of a phase, with ``of_scene`` as the scene's
     friction and the bodies of the cage displaced as for `cases_of`.
     """
+    if scene.planar is not None:
+        touched = in_plane(scene, pose, touched)
     groups: dict[object, list[int]] = {}
     for number, touch in enumerate(touched):
         groups.setdefault(touch.group, []).append(number)
@@ -102,6 +107,20 @@ def problem_of(
     load /= float(np.linalg.norm(scale @ load)) or 1.0
     by_group = tuple(map(tuple, groups.values()))
     return ContactProblem(faces, by_group, directions, places, wrenches, friction, load, scale)
+
+
+def in_plane(scene: Scene, pose: Pose, touched: Sequence[Touch]) -> list[Touch]:
+    """Return what touches at a pose of a planar scene, without groups of which one face is across the plane: no motion
+    in the plane goes into it.
+    """
+    center, scale = pose.transform(scene.object.center_of_gravity_m), _scale(scene, pose, 0)
+    across = set[object]()
+    for touch in touched:
+        normal = touch.directions[0]
+        wrench = np.concatenate([normal, np.cross(touch.place - center, normal)])
+        if np.linalg.norm(scale @ wrench) <= ACROSS:
+            across.add(touch.group)
+    return [touch for touch in touched if touch.group not in across]
 
 
 def _pressed(
@@ -122,7 +141,7 @@ def _pressed(
 
 def _scale(scene: Scene, pose: Pose, n_pressing: int) -> FloatArray:
     """Return D^-1/2, D = diag(1, 1, 1, K) along the principal axes of K; that of "drag" prefers none. What presses has
-    the object's mass.
+    the object's mass. What a plane holds has none of the force's effect: D is infinite there.
     """
     gyration = scene.object.gyration_m2
     if (scene.metric or DEFAULT_METRIC) == "drag":
@@ -130,6 +149,12 @@ def _scale(scene: Scene, pose: Pose, n_pressing: int) -> FloatArray:
     else:
         squares, axes = np.linalg.eigh(gyration)
     scale = np.eye(6 + n_pressing)
-    least = (LEAST_RADIUS_OF_GYRATION * scene.object.reach_m) ** 2
-    scale[3:6, 3:6] = (pose.rotation @ axes).T / np.sqrt(np.maximum(squares, least))[:, None]
+    squares = np.maximum(squares, (LEAST_RADIUS_OF_GYRATION * scene.object.reach_m) ** 2)
+    principal = (pose.rotation @ axes).T
+    scale[3:6, 3:6] = principal / np.sqrt(squares)[:, None]
+    if scene.planar is not None:
+        normal = normal_axis(scene.planar)
+        scale[normal, normal] = 0.0
+        scale[3:6, 3:6] = 0.0
+        scale[3 + normal, 3 + normal] = 1.0 / math.sqrt(squares @ principal[:, normal] ** 2)
     return scale

@@ -70,7 +70,7 @@ def inner_scene(scene: Scene) -> Scene | None:
     if touch > TOUCH_GREATEST:
         return None
     try:
-        return Scene(held, cage, [Load("none", gravity=(0, 0, -1))], tolerances=Tolerances(touch))
+        return Scene(held, cage, [Load("none", gravity=(0, 0, -1))], planar=scene.planar, tolerances=Tolerances(touch))
     except SceneError:
         return None
 

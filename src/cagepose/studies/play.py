@@ -11,11 +11,13 @@ from numpy.typing import ArrayLike
 
 from cagepose.errors import Problem, SceneError
 from cagepose.model.checks import FloatArray, expect, finite_array, unit_vector
+from cagepose.model.planar import held_freedoms
 from cagepose.model.scene import FARTHEST_START, Scene, millimetres
 from cagepose.studies.bounds import Bounds
 from cagepose.studies.cage_verdict import CageVerdict, is_caged, judge_cage, why_not_caged
+from cagepose.studies.held import held_for_play
 from cagepose.studies.inner_cage import inner_scene
-from cagepose.studies.play_frame import FREEDOMS, PlayFrame, range_goals
+from cagepose.studies.play_frame import FREEDOMS, N_LENGTHS, PlayFrame, range_goals
 from cagepose.studies.play_result import Play, PlayEnd, PlayRange, PointPlay
 from cagepose.studies.polytope_play import MOST_STARTS, PolytopePlay
 from cagepose.studies.pushed_play import PushedPlay
@@ -38,6 +40,7 @@ def play(
     at: Sequence[ArrayLike] = (),
     directions: Sequence[ArrayLike] = (),
     *,
+    hold: Sequence[str] = (),
     seated: str | None = None,
     search_s: float = SEARCH_S,
     progress: Callable[[float], None] | None = None,
@@ -51,7 +54,10 @@ def play(
     at
         Points of the object, in its frame, metres.
     directions
-        In the cage's frame; none: x, y and z. Each goes with each point.
+        In the cage's frame; none: x, y and z, of those the plane's where the scene has one. Each goes with each point.
+    hold
+        Freedoms that are held: any of "x", "y" and "z", and of "roll", "pitch" and "yaw" none, two or all three. What
+        is said then, that it is caged too, is of motions in the others alone.
     seated
         Name of a phase: how far the object can move from where the scene's run comes to rest in it, while its load goes
         on, pushed a ten-thousandth as hard and without friction. None: from the start, without a load.
@@ -63,25 +69,32 @@ def play(
     Raises
     ------
     SceneError
-        A point or direction is not three finite numbers, a direction of length zero, or a point far away; or the scene
+        A point or direction is not three finite numbers, a direction of length zero, or a point far away; freedoms that
+        cannot be held, see `held_for_play`; or the scene
         has no phase ``seated``, or does not come to rest in it.
     """
     expect(scene, Scene, "scene")
     points = [_point_near(scene, point) for point in at]
-    along = [unit_vector(direction, "direction") for direction in (directions if len(directions) else np.eye(3))]
+    held = held_for_play(scene, hold)
+    if hold and seated is not None:
+        raise SceneError([Problem(("hold",), "is asked of an object without a load; leave out seated")])
+    is_free = held == 0.0
+    axes = np.eye(N_LENGTHS)[is_free[:N_LENGTHS]]
+    along = [unit_vector(direction, "direction") for direction in (directions if len(directions) else axes)]
     shifts = [(point, direction) for point in points for direction in along]
     if seated is not None:
         pushed = PushedPlay(scene, seated_pushes(scene, seated), shifts)
         found = _Found(None, pushed.ranges(), pushed.analysis_s, 0.0)
-    elif scene.has_other_shapes:
-        found = _of_shapes(scene, shifts, search_s, progress)
+    elif scene.has_other_shapes or held.any():
+        found = _of_shapes(scene, held, shifts, search_s, progress)
     else:
         found = _of_boxes_among_points(scene, shifts, search_s, progress)
     return Play(
         scene,
-        {name: PlayRange(*found.ranges[index]) for index, name in enumerate(FREEDOMS)},
+        {name: PlayRange(*found.ranges[index]) for index, name in enumerate(FREEDOMS) if is_free[index]},
         tuple(PointPlay(*shift, *ends) for shift, ends in zip(shifts, found.ranges[len(FREEDOMS) :], strict=True)),
         found.cage,
+        tuple(name for name, is_held in zip(FREEDOMS, held, strict=True) if is_held),
         seated,
         found.analysis_s,
         found.certificate_s,
@@ -106,12 +119,14 @@ def _of_boxes_among_points(scene: Scene, shifts: Shifts, search_s: float, progre
     return _Found(cage, _bounded(found.ranges(), bounds.ends), found.analysis_s, bounds.certificate_s)
 
 
-def _of_shapes(scene: Scene, shifts: Shifts, search_s: float, progress: Progress) -> _Found:
-    pushed, inner = PushedPlay(scene, unseated(scene), shifts), inner_scene(scene)
+def _of_shapes(scene: Scene, held: FloatArray, shifts: Shifts, search_s: float, progress: Progress) -> _Found:
+    if (held != held_freedoms(scene.planar)).any():  # what is held is the origin; without a load any centre will do
+        scene = scene.changed("object.center_of_gravity", [0.0, 0.0, 0.0])
+    pushed, inner = PushedPlay(scene, unseated(scene, held), shifts), inner_scene(scene)
     if inner is None:
         cage = pushed.judge(NO_INNER_CAGE, None, search_s, progress)
         return _Found(cage, pushed.ranges(), pushed.analysis_s, 0.0)
-    frame = PlayFrame(inner)
+    frame = PlayFrame(inner, held)
     bounds = Bounds(frame, range_goals(frame, shifts), inner.touch_m)
     if bounds.is_caged:
         cage = is_caged("a point of the cage's shapes")

@@ -12,6 +12,7 @@ from cagepose.kernels.algebra.record import Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector
 from cagepose.kernels.play.goal import PITCH, ROLL, SHIFT, YAW, Goal
 from cagepose.model.checks import FloatArray, as_vector
+from cagepose.model.planar import held_freedoms
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 
@@ -31,17 +32,20 @@ class PlayFrame:
         with a travel by this.
     geometry
         Boxes at the start and cage points, both in this frame, lengths of the scene.
+    held
+        1 for each freedom that is held, else 0, (6,); of no others than the scene's unless they are given.
     pose_frame_object
         The object's start, metres.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, held: FloatArray | None = None) -> None:
         points_world = scene.cage.points_world()
         self._pose_world_frame = Pose(points_world.mean(axis=0), scene.cage.pose_world_cage.quaternion_wxyz)
         points = self._pose_world_frame.inverse_transform(points_world)
         farthest = float(np.linalg.norm(points, axis=1).max())
         self.length_m = farthest if farthest > 0.0 else scene.size_m
         self.pose_frame_object = self._pose_world_frame.inverse() @ scene.object.pose_world_object
+        self.held = held_freedoms(scene.planar) if held is None else held  # such a cage is not tilted
         self.geometry = scene.boxes._replace(
             half_sizes=scene.boxes.half_sizes / self.length_m,
             box_positions=self.from_object(scene.boxes.box_positions),

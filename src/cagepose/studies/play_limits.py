@@ -49,7 +49,7 @@ class Clearance:
 
 def limiting_clearances(scene: Scene, frame: PlayFrame, goal: Goal, extreme: Extreme) -> tuple[Clearance, ...]:
     """Return what limits a goal at the extreme that was found for it, the gap that is best to close first."""
-    work = empty_play_workspace(frame.geometry)
+    work = empty_play_workspace(frame.geometry, frame.held)
     gaps = empty_rows(LimitingGap, len(work.faces))
     n_gaps = find_limiting_gaps(frame.geometry, goal, extreme, gaps, work)
     per_metre = 1.0 if goal.kind == SHIFT else 1.0 / frame.length_m
@@ -66,7 +66,9 @@ def limiting_clearances(scene: Scene, frame: PlayFrame, goal: Goal, extreme: Ext
     return tuple(sorted(found, key=lambda clearance: (-clearance.closing, -clearance.opening)))
 
 
-def pressed_clearances(scene: Scene, pose: Pose, contacts: np.ndarray, push: FloatArray) -> tuple[Clearance, ...]:
+def pressed_clearances(
+    scene: Scene, pose: Pose, contacts: np.ndarray, push: FloatArray, held: FloatArray
+) -> tuple[Clearance, ...]:
     """Return what limits a push that rests: the work of forces that balance it is how far its end moves (7.11).
 
     Parameters
@@ -77,6 +79,8 @@ def pressed_clearances(scene: Scene, pose: Pose, contacts: np.ndarray, push: Flo
         That touch there, rows of `ContactRecord`.
     push
         Force, and moment about the centre of gravity, in the world, (6,), whose work is what the end is measured in.
+    held
+        1 for each freedom that is held, else 0, (6,).
     """
     cones = contact_cones(
         -contacts["normal"],
@@ -88,17 +92,17 @@ def pressed_clearances(scene: Scene, pose: Pose, contacts: np.ndarray, push: Flo
     found = []
     for point in np.unique(contacts["cage_part"]):
         together = contacts["cage_part"] == point
-        closing = _loss(cones.columns[:, 0], load / size, together.astype(np.float64))
+        closing = _loss(cones.columns[:, 0], load / size, together.astype(np.float64), held)
         if closing <= REACH_OF_PROGRAM * LEAST_PRICE:
             continue
-        opening = -_loss(cones.columns[:, 0], load / size, -together.astype(np.float64))
+        opening = -_loss(cones.columns[:, 0], load / size, -together.astype(np.float64), held)
         box = contacts["part"][together][0]
         names = scene.cage.element_names[point], scene.object.element_names[box]
         found.append(Clearance(*names, None, size * closing, size * max(opening, 0.0)))
     return tuple(sorted(found, key=lambda clearance: (-clearance.closing, -clearance.opening)))
 
 
-def _loss(normals: FloatArray, push: FloatArray, gaps: FloatArray) -> float:
+def _loss(normals: FloatArray, push: FloatArray, gaps: FloatArray, held: FloatArray) -> float:
     """Return how much less far a push comes when gaps are closed by so much, (n,); inf: they cannot be.
 
     Contacts in one line but for rounding would share their push uniquely, with arms that only a turn far beyond the
@@ -107,6 +111,7 @@ def _loss(normals: FloatArray, push: FloatArray, gaps: FloatArray) -> float:
     program = empty_record(Program)
     program.objective[:] = push
     rows = np.concatenate([-normals, np.eye(N_UNKNOWNS), -np.eye(N_UNKNOWNS)])
-    bounds = np.concatenate([-gaps, np.full(2 * N_UNKNOWNS, REACH_OF_PROGRAM)])
+    reach = np.where(held == 1.0, 0.0, REACH_OF_PROGRAM)
+    bounds = np.concatenate([-gaps, reach, reach])
     outcome = solve_program(rows, bounds, program)
     return -float(push @ program.x) if outcome == OPTIMAL else np.inf

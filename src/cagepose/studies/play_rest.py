@@ -21,7 +21,7 @@ from cagepose.model.checks import FloatArray
 from cagepose.model.load import Load
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.model.scope import check_boxes_and_points
+from cagepose.model.scope import check_all_freedoms, check_boxes_and_points
 from cagepose.runs.actions import acting_pushes, is_one_force
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.studies.play_frame import FREEDOMS, N_LENGTHS, PlayFrame, motion_after, range_goals
@@ -97,8 +97,9 @@ def play_rests(scene: Scene) -> tuple[PlayRest, ...]:
     friction, and proves the rest.
     """
     check_boxes_and_points(scene, "play")
+    check_all_freedoms(scene, "where loads leave the play")
     frame = PlayFrame(scene)
-    work = empty_play_workspace(frame.geometry)
+    work = empty_play_workspace(frame.geometry, frame.held)
     loads = [load for load in scene.loads if is_one_force(scene, load)]
     goals, sizes = _load_goals(scene, loads, frame)
     extremes = empty_rows(Extreme, len(goals))

@@ -105,6 +105,8 @@ class Play:
         In the order asked.
     cage
         Whether it can get out; None where it is seated.
+    held
+        Freedoms that are held, by the scene's plane or as asked.
     seated
         The phase whose load holds it in its seat, from where all ranges are measured; None: none, from the start pose.
     analysis_s, certificate_s
@@ -115,6 +117,7 @@ class Play:
     freedoms: dict[str, PlayRange]
     points: tuple[PointPlay, ...]
     cage: CageVerdict | None
+    held: tuple[str, ...]
     seated: str | None
     analysis_s: float
     certificate_s: float

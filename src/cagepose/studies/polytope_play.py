@@ -35,7 +35,8 @@ class PolytopePlay:
         self.frame = frame
         self.goals = goals
         self.extremes = empty_rows(Extreme, len(goals))
-        geometry, workspace = self._given = Slots(frame.geometry), Slots(empty_play_workspace(frame.geometry))
+        work = empty_play_workspace(frame.geometry, frame.held)
+        geometry, workspace = self._given = Slots(frame.geometry), Slots(work)
         started = perf_counter()
         find_play(geometry, goals, self.extremes, workspace)
         self.analysis_s = perf_counter() - started

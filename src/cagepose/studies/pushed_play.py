@@ -68,7 +68,8 @@ class PushedPlay:
 
         An object that gets out is pushed from the start alone: out there nothing has an end.
         """
-        named, asked = range(len(FREEDOMS)), range(len(FREEDOMS), len(self._freedoms))
+        named = np.flatnonzero(self._pushes.held == 0.0).tolist()
+        asked = range(len(FREEDOMS), len(self._freedoms))
         self._push_middle()
         self._push_all(named, [()])
         first_steps = self._pushes.n_steps
@@ -162,7 +163,9 @@ class PushedPlay:
         return [(self._end(place, -1.0), self._end(place, 1.0)) for place in range(len(self._freedoms))]
 
     def _end(self, place: int, sign: float) -> PlayEnd:
-        found = self._found[place, sign]
+        found = self._found.get((place, sign))
+        if found is None:  # it is held
+            return PlayEnd(None, 0.0, None, "local", lambda: self._pushes.start, tuple)
         if found.pushed.goes_on:
             return PlayEnd(None, None, None, "open", lambda: None, tuple)
         status: EndStatus = "local" if found.is_end else "not converged"
@@ -172,12 +175,14 @@ class PushedPlay:
 
     def _clearances(self, place: int, sign: float, pushed: Pushed) -> tuple[Clearance, ...]:
         push = self._pushes.wrench(self._freedoms[place], sign, pushed.pose)
-        return pressed_clearances(self.scene, pushed.pose, pushed.contacts, push)
+        return pressed_clearances(self.scene, pushed.pose, pushed.contacts, push, self._pushes.held)
 
     def free_directions(self) -> tuple[str, ...]:
         """``x``: free both ways; ``+x``: free one way."""
         names = []
         for place, name in enumerate(FREEDOMS):
+            if self._pushes.held[place] == 1.0:
+                continue
             low, high = (self._found[place, sign].pushed.goes_on for sign in (-1.0, 1.0))
             if low or high:
                 names.append(name if low and high else f"{'-' if low else '+'}{name}")

@@ -105,6 +105,8 @@ class Pushes:
         From where ways and angles count.
     is_seated
         Whether more than the push acts.
+    held
+        1 for each freedom that is held, else 0, (6,).
     n_steps
         That all pushes so far took together.
     """
@@ -117,6 +119,7 @@ class Pushes:
         unit_n: float = 1.0,
         unit_nm: float = 1.0,
         displaced: FloatArray | None = None,
+        held: FloatArray | None = None,
     ) -> None:
         """
         Parameters
@@ -131,6 +134,8 @@ class Pushes:
             How much force and moment a push has.
         displaced
             Where the bodies of the cage stand, as for `cases_of`.
+        held
+            1 for each freedom that is held, else 0, (6,); None: those of the scene.
         """
         self.start, self._cage = start, scene.cage.pose_world_cage
         self._center, self._units = scene.object.center_of_gravity_m, (unit_n, unit_nm)
@@ -147,7 +152,11 @@ class Pushes:
         self._outcome = empty_outcome(scene.geometry, 1, STEP_LIMIT, 0)
         rules = QuasistaticRules(TURN_STEP_RAD, STEP_LIMIT)
         work = empty_drive_workspace(scene.geometry, STEP_LIMIT, 1, 1, len(self._actions))
-        self._part, self._rules, self._work = Slots(part_of(scene)), Slots(rules), Slots(work)
+        part = part_of(scene)
+        if held is not None:
+            part.body.held[:] = held
+        self.held = part.body.held.copy()
+        self._part, self._rules, self._work = Slots(part), Slots(rules), Slots(work)
         self._written = Slots(self._outcome)
         self.n_steps = 0
 
@@ -230,9 +239,9 @@ class Pushes:
             action["arm_object"] = self.start.rotation.T @ self._cage.rotation[:, 0]
 
 
-def unseated(scene: Scene) -> Pushes:
-    """Return pushes from the scene's start, with nothing beside them."""
-    return Pushes(scene, scene.object.pose_world_object, np.zeros(0, dtype_of(Action)))
+def unseated(scene: Scene, held: FloatArray | None = None) -> Pushes:
+    """Return pushes from the scene's start, with nothing beside them; ``held`` as for `Pushes`."""
+    return Pushes(scene, scene.object.pose_world_object, np.zeros(0, dtype_of(Action)), held=held)
 
 
 def _pose(row: FloatArray) -> Pose:

@@ -65,6 +65,8 @@ def support_region(run: Run, phase_index: int, view: LoadView, reach_m: float) -
     reach_m
         Farther from the centre of gravity nothing is shown.
     """
+    if run.scene.planar is not None:
+        return None  # a region of a level plane, of which the load's line passes through a line alone
     problem = contact_problem(run, phase_index)
     choices = list(islice(product(*problem.groups), MOST_CHOICES + 1))
     if len(choices) > MOST_CHOICES:

@@ -8,6 +8,7 @@ one: along the normal with what rolling adds, which moves the place of contact o
 
 from __future__ import annotations
 
+from cagepose.kernels.algebra.dense import frobenius_norm
 from cagepose.kernels.algebra.least_squares import WRENCH, inner
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
@@ -16,7 +17,7 @@ from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, matrix_f
 from cagepose.kernels.contact.contact_set import ContactSet
 from cagepose.kernels.contact.load_curvature import add_circulation, add_load_curvature
 from cagepose.kernels.contact.loads import PhaseLoad
-from cagepose.kernels.contact.metric import Frame
+from cagepose.kernels.contact.metric import Frame, is_held
 from cagepose.kernels.contact.pressing import add_pressed_curvature, add_pressing_stiffness
 from cagepose.kernels.native.kernel import kernel
 
@@ -87,6 +88,25 @@ def add_matrix(matrix: FloatArray, factor: float, out: FloatArray) -> None:
 
 
 @kernel
+def clear_held(frame: Frame, out: FloatArray) -> None:
+    """Take what is held out of a matrix, as no motion has a part there."""
+    for j in range(WRENCH):
+        for k in range(WRENCH):
+            if is_held(frame, j) or is_held(frame, k):
+                out[j, k] = 0.0
+
+
+@kernel
+def stiffen_held(frame: Frame, n: int, out: FloatArray) -> None:
+    """Give what is held the greatest curvature of S, as `clear_held`, but that S stays positive where it is one."""
+    clear_held(frame, out)
+    greatest = frobenius_norm(out, n)
+    for k in range(WRENCH):
+        if is_held(frame, k):
+            out[k, k] = greatest
+
+
+@kernel
 def write_curvature(
     contacts: ContactSet,
     load: PhaseLoad,
@@ -112,6 +132,7 @@ def write_curvature(
             for j in range(3):
                 force = plus(force, scaled(vector_from(contact.directions[j]), state.forces[j]))
             add_sticking_curvature(contacts, i, force, frame, curved, out)
+    stiffen_held(frame, contacts.n_freedoms, out)
 
 
 @kernel
@@ -121,3 +142,4 @@ def write_circulation(
     """Write the antisymmetric part of the load's stiffness, (n, n): what no potential has."""
     clear_matrix(out, contacts.n_freedoms)
     add_circulation(load, position, quaternion, frame, out)
+    clear_held(frame, out)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cagepose.kernels.algebra.least_squares import length
 from cagepose.kernels.algebra.vector import Vector, minus, vector_from
 from cagepose.kernels.boundary.bend import curvatures, write_bend, write_twin
 from cagepose.kernels.boundary.features import PlacedBoundary, number_of_bodies
@@ -13,6 +14,7 @@ from cagepose.kernels.contact.contact_set import ContactSet, choose, write_direc
 from cagepose.kernels.contact.friction import Friction, friction_share
 from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.contact.seats import seat_circles
+from cagepose.kernels.contact.tolerances import ACROSS
 from cagepose.kernels.native.kernel import kernel
 
 
@@ -37,7 +39,31 @@ def find_contacts(
                 first = contacts.used[0]
             append_meeting(held, cage, body, row, friction, first, center, frame, contacts)
     seat_circles(geometry, contacts, frame)
+    drop_across(contacts)
     return True
+
+
+@kernel
+def drop_across(contacts: ContactSet) -> None:
+    """Drop the groups of which one face is across all freedoms that are left: no motion goes into it, and what lies at
+    an edge of such a face slides along it.
+    """
+    kept = first = 0
+    while first < contacts.used[0]:
+        end, is_across, group = first, False, contacts.rows[first].group
+        while end < contacts.used[0] and contacts.rows[end].group == group:
+            is_across = is_across or length(contacts.rows[end].columns[0], contacts.n_freedoms) <= ACROSS
+            end += 1
+        new_group = kept
+        for i in range(first, end if not is_across else first):
+            if kept < i:
+                contacts.rows[kept] = contacts.rows[i]  # type: ignore[index]
+                contacts.states[kept] = contacts.states[i]  # type: ignore[index]
+                contacts.bends[kept] = contacts.bends[i]  # type: ignore[index]
+            contacts.rows[kept].group = new_group
+            kept += 1
+        first = end
+    contacts.used[0] = kept
 
 
 @kernel

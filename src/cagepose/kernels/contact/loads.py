@@ -12,7 +12,7 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.contact.cardan import cardan_at, cardan_moment, cardan_turns
 from cagepose.kernels.contact.metric import Frame, write_scaled_wrench
-from cagepose.kernels.contact.tolerances import LENGTH_OF_NO_SPRING, ROUNDING_OF_ENDS, SHORTEST_SPRING
+from cagepose.kernels.contact.tolerances import LEAST_OF_WHOLE, LENGTH_OF_NO_SPRING, ROUNDING_OF_ENDS, SHORTEST_SPRING
 from cagepose.kernels.native.kernel import kernel
 
 DEAD_FORCE, FOLLOWING_FORCE, DEAD_MOMENT, FOLLOWING_MOMENT, SPRING, CARDAN_MOMENT, FIXED_FORCE = 0, 1, 2, 3, 4, 5, 6
@@ -122,7 +122,8 @@ def acting(action: Action, position: Vector, quaternion: Quaternion) -> Acting:
 @kernel
 def write_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, frame: Frame, out: FloatArray) -> float:
     """Write the scaled wrench of a phase's load, D^-1/2 w; return the length of its terms, which may cancel. Those of a
-    spring are no shorter than what the rounding of its ends makes of its force.
+    spring are no shorter than what the rounding of its ends makes of its force, and no action's terms vanish beside
+    what of it is held.
     """
     terms = rounding = 0.0
     force, moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
@@ -131,7 +132,11 @@ def write_load(load: PhaseLoad, position: Vector, quaternion: Quaternion, frame:
             continue
         one = acting(load[which], position, quaternion)
         write_scaled_wrench(one.force, one.moment, frame, out)
-        terms += math.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2 + out[3] ** 2 + out[4] ** 2 + out[5] ** 2)
+        whole = norm(one.force) + norm(one.moment) / frame.extent_m
+        terms += max(
+            math.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2 + out[3] ** 2 + out[4] ** 2 + out[5] ** 2),
+            LEAST_OF_WHOLE * whole,
+        )
         force, moment = plus(force, scaled(one.force, one.share)), plus(moment, scaled(one.moment, one.share))
         if load[which].kind == SPRING:
             ends = norm(vector_from(load[which].anchor)) + norm(position)

@@ -3,6 +3,9 @@
 D is that of a rigid body of mass 1: D = diag(1, 1, 1, K), K the inertia about the centre of gravity. In "scaled"
 coordinates y = D^1/2 nu, along the principal axes of K, the metric is the identity, every component is a length, and
 moments can be compared with forces. A scaled vector is an array of six: three for travel, three for turning.
+
+A freedom that is held has an infinite D: no wrench moves the object along it, and no motion has a part there. Its
+numbers in scaled wrenches and twists are zero, so that what holds it need not be known: it carries all that acts there.
 """
 
 from __future__ import annotations
@@ -10,7 +13,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, NamedTuple
 
-from cagepose.kernels.algebra.least_squares import MOST_ROWS
+from cagepose.kernels.algebra.least_squares import MOST_ROWS, WRENCH, PassiveSet
 from cagepose.kernels.algebra.motion import motion_of, moved_point, turned_by_amount
 from cagepose.kernels.algebra.pose import (
     Quaternion,
@@ -52,18 +55,36 @@ class Body:
         Radii of gyration about them, metres.
     reach_m
         Distance of the farthest corner from the centre of gravity, metres.
+    held
+        1 for what is held, or 0: travel along x, y and z of the world, and turns about them. Of the turns none is held,
+        all are, or all but one.
     """
 
     axes_object: Annotated[FloatArray, 3, 3]
     radii: Annotated[FloatArray, 3]
     reach_m: float
+    held: Annotated[FloatArray, 6]
 
 
 class Frame(NamedTuple):
-    """The scaled coordinates at one pose: rows are the principal axes in the world."""
+    """The scaled coordinates at one pose.
+
+    Attributes
+    ----------
+    axes
+        Rows are the principal axes in the world; where turns are held, the axes of the world.
+    radii
+        Radii of gyration about them, metres; infinite where the turn is held.
+    travels
+        1, or 0 along an axis of the world along which travel is held.
+    extent_m
+        The greatest radius of gyration of the object, whatever is held, metres.
+    """
 
     axes: Matrix
     radii: Vector
+    travels: Vector
+    extent_m: float
 
 
 @kernel
@@ -73,7 +94,20 @@ def frame_at(body: Body, quaternion: Quaternion) -> Frame:
         rotated(quaternion, row(body.axes_object, 1)),
         rotated(quaternion, row(body.axes_object, 2)),
     )
-    return Frame(axes, (body.radii[0], body.radii[1], body.radii[2]))
+    radii, held = (body.radii[0], body.radii[1], body.radii[2]), body.held
+    travels, extent_m = (1.0 - held[0], 1.0 - held[1], 1.0 - held[2]), max(radii[0], radii[1], radii[2])
+    if held[3] + held[4] + held[5] == 0.0:
+        return Frame(axes, radii, travels, extent_m)
+    about = (radius_about(axes, radii, body, 0), radius_about(axes, radii, body, 1), radius_about(axes, radii, body, 2))
+    return Frame(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), about, travels, extent_m)
+
+
+@kernel
+def radius_about(axes: Matrix, radii: Vector, body: Body, axis: int) -> float:
+    """Return the radius of gyration about an axis of the world, from the principal ones; inf: the turn is held."""
+    if body.held[3 + axis] == 1.0:
+        return math.inf
+    return norm((radii[0] * axes[0][axis], radii[1] * axes[1][axis], radii[2] * axes[2][axis]))
 
 
 @kernel
@@ -81,10 +115,38 @@ def write_scaled_wrench(force: Vector, moment: Vector, frame: Frame, out: FloatA
     """Write D^-1/2 (force, moment about the centre of gravity) into six numbers."""
     turning = times(frame.axes, moment)
     for k in range(3):
-        out[k] = force[k]
+        out[k] = frame.travels[k] * force[k]
     out[3] = turning[0] / frame.radii[0]
     out[4] = turning[1] / frame.radii[1]
     out[5] = turning[2] / frame.radii[2]
+
+
+@kernel
+def wrench_of(scaled_wrench: FloatArray, frame: Frame) -> tuple[Vector, Vector]:
+    """Return (force, moment about the centre of gravity) of a scaled wrench, with no part in what is held: D^1/2 y."""
+    s, radii = scaled_wrench, frame.radii
+    turning = (
+        radii[0] * s[3] if s[3] != 0.0 else 0.0,
+        radii[1] * s[4] if s[4] != 0.0 else 0.0,
+        radii[2] * s[5] if s[5] != 0.0 else 0.0,
+    )
+    return (s[0], s[1], s[2]), transposed_times(frame.axes, turning)
+
+
+@kernel
+def is_held(frame: Frame, k: int) -> bool:
+    """Whether one of the six freedoms is held."""
+    return frame.travels[k] == 0.0 if k < 3 else frame.radii[k - 3] == math.inf
+
+
+@kernel
+def hold_freedoms(frame: Frame, span: PassiveSet) -> None:
+    """Begin an empty span with the freedoms that are held."""
+    for k in range(WRENCH):
+        if is_held(frame, k):
+            for row in range(span.n_rows):
+                span.basis[span.used, row] = 1.0 if row == k else 0.0
+            span.used += 1
 
 
 @kernel

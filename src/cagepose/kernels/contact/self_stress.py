@@ -17,7 +17,7 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.span import extend, write_complement, write_outside, write_reduced
 from cagepose.kernels.contact.cone import ConeWorkspace, clear_cone, cone_residual
 from cagepose.kernels.contact.contact_set import ContactSet, count_chosen
-from cagepose.kernels.contact.curvature import add_face_curvature, clear_matrix
+from cagepose.kernels.contact.curvature import add_face_curvature, clear_held, clear_matrix
 from cagepose.kernels.contact.metric import Frame
 from cagepose.kernels.contact.tolerances import (
     CARRIED_ALONG_LOCKED,
@@ -155,6 +155,7 @@ def lock(contacts: ContactSet, frame: Frame, n_stresses: int, work: ContactWorks
             stress.imbalance[k] -= passive.x[j] * wrench[k]
     balance_by_locked(contacts, stress.imbalance, work)
     add_second_order(contacts, stress.reaction, frame, curvature)
+    clear_held(frame, curvature)
     for k in range(passive.used):
         i = stress.cone.contacts[passive.labels[k]]
         contacts.states[i].is_locked = True
@@ -206,7 +207,7 @@ def find_locked(contacts: ContactSet, frame: Frame, work: ContactWorkspace) -> N
     while n_stresses < STRESS_LIMIT:
         for i in range(contacts.used[0]):
             state = contacts.states[i]
-            is_closed = contacts.rows[i].gap <= LEAST_PLAY * max(frame.radii[0], frame.radii[1], frame.radii[2])
+            is_closed = contacts.rows[i].gap <= LEAST_PLAY * frame.extent_m
             state.counts = state.chosen and is_closed and not state.is_locked
         if clear_self_stress(contacts, work.stress):
             lock(contacts, frame, n_stresses, work)

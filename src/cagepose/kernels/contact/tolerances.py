@@ -75,3 +75,7 @@ PARALLEL_COSINE = 1.0 - 1e-12
 """Cosine of the angle between normals of one face, or axes of one circle."""
 SAME_WAY = 0.5
 """Cosine of the angle between normals of one contact, before and after a step, or of one circle on one face."""
+ACROSS = 1e-9
+"""Length of the scaled wrench of a unit normal. A shorter one is the rounding of a normal along what is held."""
+LEAST_OF_WHOLE = 1e-6
+"""Fraction of a force or moment. If less of it is along what is not held, its rounding is no load."""

@@ -225,9 +225,9 @@ def publish_proof(
     phase.motion = NONE
     if code in (PROVEN_MOVES, OTHER_ONSET):
         y = scratch.solver.y if code == PROVEN_MOVES else scratch.tree.y
-        velocity, spin = twist_of(y, frame_at(part.body, quaternion))
-        radii = part.body.radii
-        begins = motion_of_twist(velocity, spin, position, max(radii[0], radii[1], radii[2]))
+        frame = frame_at(part.body, quaternion)
+        velocity, spin = twist_of(y, frame)
+        begins = motion_of_twist(velocity, spin, position, frame.extent_m)
         phase.motion = begins.motion
         phase.pitch = begins.distance if begins.motion == SCREW else 0.0
         for k in range(3):

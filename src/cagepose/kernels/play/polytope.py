@@ -54,6 +54,8 @@ class PlayWorkspace(NamedTuple):
         For non-negative least squares over the rows, (n_pairs,).
     is_turned
         Whether a point has been let around an edge, (n_pairs,).
+    held
+        1 for each freedom that is held, else 0, (6,).
     program, newton
         See there.
     """
@@ -73,12 +75,13 @@ class PlayWorkspace(NamedTuple):
     lengths: FloatArray
     is_rejected: NDArray[np.bool_]
     is_turned: NDArray[np.bool_]
+    held: FloatArray
     program: Program
     newton: NewtonStep
 
 
-def empty_play_workspace(geometry: BoxesAndPoints) -> PlayWorkspace:
-    """Return a workspace for a scene (plain Python)."""
+def empty_play_workspace(geometry: BoxesAndPoints, held: FloatArray) -> PlayWorkspace:
+    """Return a workspace for a scene of which some freedoms are held, (6,) (plain Python)."""
     n_points, n_boxes = len(geometry.points_world), geometry.n_own_boxes
     n_pairs = n_points * n_boxes
     rows, bounds = program_rows(n_pairs + N_TRUST)
@@ -98,6 +101,7 @@ def empty_play_workspace(geometry: BoxesAndPoints) -> PlayWorkspace:
         lengths=np.zeros(n_pairs),
         is_rejected=np.zeros(n_pairs, np.bool_),
         is_turned=np.zeros(n_pairs, np.bool_),
+        held=held,
         program=empty_record(Program),
         newton=empty_record(NewtonStep),
     )
@@ -185,14 +189,14 @@ def write_rows(geometry: BoxesAndPoints, motion: Motion, work: PlayWorkspace) ->
 
 @kernel
 def write_trust_region(work: PlayWorkspace, radius: float) -> None:
-    """Write |xi_k| <= radius; an infinite radius: none."""
+    """Write |xi_k| <= radius, and of what is held |xi_k| <= 0; an infinite radius: none."""
     first = len(work.faces)
     for k in range(6):
         for side in range(2):
             for other in range(6):
                 work.rows[first + 2 * k + side, other] = 0.0
             work.rows[first + 2 * k + side, k] = 1.0 - 2.0 * side
-            work.bounds[first + 2 * k + side] = radius
+            work.bounds[first + 2 * k + side] = 0.0 if work.held[k] == 1.0 else radius
 
 
 @kernel

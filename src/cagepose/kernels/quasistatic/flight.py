@@ -6,6 +6,7 @@ from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, scaled
 from cagepose.kernels.boundary.geometry import middle_of_cage_part
 from cagepose.kernels.contact.loads import BENT, BOUND, STRAIGHT, drift_and_sway, flight
+from cagepose.kernels.contact.metric import frame_at
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.setting import Setting
 
@@ -28,7 +29,9 @@ def nothing_ahead(setting: Setting, position: Vector, quaternion: Quaternion, ve
         return True
     if kind == BENT:
         return False
-    drift, sway = drift_and_sway(setting.load, position, quaternion, spin)
+    whole, sway = drift_and_sway(setting.load, position, quaternion, spin)
+    travels = frame_at(setting.body, quaternion).travels
+    drift = (travels[0] * whole[0], travels[1] * whole[1], travels[2] * whole[2])
     size = norm(drift)
     if size == 0.0:
         return False

@@ -12,9 +12,9 @@ from typing import NamedTuple
 from cagepose.kernels.algebra.motion import motion_of
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.record import FloatArray
-from cagepose.kernels.algebra.vector import Vector, dot, transposed_times
+from cagepose.kernels.algebra.vector import Vector, dot
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, MOVES, ON_THE_WAY, equilibrium
-from cagepose.kernels.contact.metric import Frame, frame_at, twist_between
+from cagepose.kernels.contact.metric import Frame, frame_at, twist_between, wrench_of
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import beyond_border, still_meet
 from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist
@@ -91,9 +91,8 @@ def way_left(
 @kernel
 def power_of(wrench: FloatArray, frame: Frame, twist: Twist) -> float:
     """Return the power of a scaled wrench along a twist, watts for each amount a second."""
-    radii = frame.radii
-    moment = transposed_times(frame.axes, (radii[0] * wrench[3], radii[1] * wrench[4], radii[2] * wrench[5]))
-    return dot((wrench[0], wrench[1], wrench[2]), twist.velocity) + dot(moment, twist.spin)
+    force, moment = wrench_of(wrench, frame)
+    return dot(force, twist.velocity) + dot(moment, twist.spin)
 
 
 @kernel

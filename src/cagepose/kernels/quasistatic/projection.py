@@ -19,7 +19,6 @@ from cagepose.kernels.algebra.vector import (
     minus,
     plus,
     row,
-    transposed_times,
 )
 from cagepose.kernels.boundary.features import place_feature, place_feature_at
 from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_of, held_moved
@@ -33,6 +32,7 @@ from cagepose.kernels.contact.metric import (
     frame_at,
     moved_along_twist,
     twist_of,
+    wrench_of,
     write_scaled_wrench,
 )
 from cagepose.kernels.native.kernel import kernel
@@ -207,9 +207,7 @@ def keep_stopped(stopped: PassiveSet, position: Vector, frame: Frame, constraint
     work = constraints.scratch[0]
     work.n_stopped = stopped.used
     for place in range(stopped.used):
-        s, radii = stopped.basis[place], frame.radii
-        force = (s[0], s[1], s[2])
-        moment = transposed_times(frame.axes, (radii[0] * s[3], radii[1] * s[4], radii[2] * s[5]))
+        force, moment = wrench_of(stopped.basis[place], frame)
         moment = plus(moment, cross(position, force))
         for k in range(3):
             work.stopped_forces[place, k], work.stopped_moments[place, k] = force[k], moment[k]

@@ -202,14 +202,14 @@ def prove(
     left = scratch.solver.residual
     clear(scratch.rest.ways, contacts.n_freedoms, 1.0)
     if code == UNSOLVED:
-        find_held(contacts, at.statuses, greatest, scratch.solver.locked, scratch.rest, at.system)
+        find_held(contacts, at.statuses, greatest, scratch.solver.locked, frame, scratch.rest, at.system)
         find_shared(contacts, at.statuses, scratch.rest)
         return TOO_MANY_CHOICES, MARGINAL, 0
     one_choice = has_one_choice(contacts)
     proof, steady = judge_faces(at, code, one_choice, greatest, load, position, quaternion, frame, size_m)
     if not one_choice:
         scratch.solver.residual = left
-        find_held(contacts, at.statuses, greatest, scratch.solver.locked, scratch.rest, at.system)
+        find_held(contacts, at.statuses, greatest, scratch.solver.locked, frame, scratch.rest, at.system)
     find_shared(contacts, at.statuses, scratch.rest)
     return proof, steady, scratch.rest.ways.used
 

@@ -26,7 +26,7 @@ from cagepose.kernels.contact.contact_set import ContactSet, is_smooth
 from cagepose.kernels.contact.curvature import write_circulation, write_curvature
 from cagepose.kernels.contact.load_curvature import has_circulation
 from cagepose.kernels.contact.loads import PhaseLoad
-from cagepose.kernels.contact.metric import Frame, ScaledVector
+from cagepose.kernels.contact.metric import Frame, ScaledVector, hold_freedoms
 from cagepose.kernels.contact.pressing import number_pressing
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.stability.contact_status import ContactStatus
@@ -97,16 +97,19 @@ def find_held(
     statuses: Rows[ContactStatus],
     friction: float,
     locked: PassiveSet,
+    frame: Frame,
     work: StabilityWorkspace,
     system: System,
 ) -> bool:
-    """Find what the contacts hold, with what those without play lock; return whether one is at the limit of friction.
+    """Find what the contacts hold, with what those without play lock and what is held anyway; return whether one is at
+    the limit of friction.
 
     A contact without force holds too if another balance loads it: then it cannot open without work. That is so where
     -a_j lies in the cone of the others, seen outside the span of those that carry.
     """
     at_limit = False
     clear(work.held, contacts.n_freedoms, 1.0)
+    hold_freedoms(frame, work.held)
     for place in range(locked.used):
         extend(work.held, locked.basis[place], PART_OUTSIDE_SPAN)
     n = contacts.used[0]
@@ -372,7 +375,7 @@ def stability(
     """
     if contacts.n_freedoms != WRENCH + number_pressing(contacts.pressing):
         return STABILITY_NOT_SHOWN  # curvatures are of one free body, and of what presses on it
-    at_limit = find_held(contacts, statuses, friction, locked, work, system)
+    at_limit = find_held(contacts, statuses, friction, locked, frame, work, system)
     n_held, n_ways = work.held.used, work.ways.used
     n_one_sided = list_one_sided(contacts, statuses, work, system)
     code, flat = STABLE_REST, 0.0
