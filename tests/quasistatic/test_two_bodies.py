@@ -23,7 +23,7 @@ from cagepose.kernels.stability.relaxation import N_COLUMNS
 from cagepose.kernels.stability.strong import UNIQUE, ModeTree, other_onset
 from inner_kernels import as_machine_code
 
-FRAME = Frame(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (1.0, 1.0, 1.0))
+FRAME = Frame(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (1.0, 1.0, 1.0), (1.0, 1.0, 1.0), 1.0)
 NOTHING = -1
 """Instead of a body: the ground."""
 DOWN = (0.0, 0.0, -1.0)
