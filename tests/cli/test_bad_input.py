@@ -24,7 +24,9 @@ POINTS = """\
 """
 PUSH = "  - name: push\n    force: {direction: [1, 0, 0], at: [0, 0, 0]}\n"
 
-KEYS = "name, units, parameters, object, cage, loads, friction, method, metric, planar, tolerances, adjustable, left_out"
+KEYS = (
+    "name, units, parameters, object, cage, loads, friction, method, metric, planar, tolerances, adjustable, left_out"
+)
 
 # What is broken, the text to replace, what to put there, and the whole line that must come out.
 EDITS = [
