@@ -108,3 +108,27 @@ def test_a_question_that_there_is_not_or_that_is_asked_twice_is_told(run_study: 
         run_study(COEFFICIENT, 1, ask=["margins"])
     with pytest.raises(SceneFileError, match="holds a question twice; ask each once"):
         run_study(COEFFICIENT, 1, ask=["jam", "jam"])
+
+
+def test_in_a_plane_play_has_columns_of_its_freedoms_alone(run_study: RunStudy, tmp_path: Path) -> None:
+    scene = tmp_path / "slot.yaml"
+    scene.write_text("""\
+name: slot
+units: {length: mm}
+planar: xz
+object: {shapes: [{box: {size: [20, 10, 40]}}], pose: {position: [0, 0, 20.01]}, mass: 1}
+cage: {points: {A: [-9, 0, 0], B: [9, 0, 0], L: [-11, 0, 30], R: [11, 0, 30], M: [-11, 0, 5], N: [11, 0, 5]}}
+loads: [{name: weight, gravity: [0, 0, -1]}]
+""")
+    (row,) = run_study({"object.mass": {"grid": [1.0]}}, method="grid", scene=scene, ask=["play"]).table().to_pylist()
+    found = {name: value for name, value in row.items() if name.startswith("play_")}
+    ends = play(load_scene(scene), search_s=0.0).freedoms
+    assert list(found) == [
+        *(f"play_{name}_{side}" for name in "xz" for side in ("low", "high")),
+        *(f"play_pitch_deg_{side}" for side in ("low", "high")),
+    ]
+    assert (found["play_x_low"], found["play_x_high"]) == pytest.approx((-1.0, 1.0), abs=1e-9)
+    assert found["play_z_high"] == math.inf
+    low, high = ends["pitch"].low.exact, ends["pitch"].high.exact
+    assert (low, high) != (None, None)
+    assert (found["play_pitch_deg_low"], found["play_pitch_deg_high"]) == (np.degrees(low), np.degrees(high))

@@ -15,7 +15,9 @@ from cagepose.model.scene import Scene
 from cagepose.model.wording import few
 
 NOTE_VERSION = 1
-KEPT = ("name", "method", "metric", "planar", "tolerances", "left_out")
+SETTINGS = ("method", "metric", "planar", "tolerances")
+"""Keys of the scene file that stand in the note, and in a scene made from it, as they are."""
+KEPT = ("name", *SETTINGS, "left_out")
 """Keys of the scene file that stand in the note as they are."""
 
 

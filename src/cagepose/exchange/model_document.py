@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cagepose.errors import FileProblem, SceneFileError
-from cagepose.exchange.beside import read_beside, spoilt
+from cagepose.exchange.beside import SETTINGS, read_beside, spoilt
 from cagepose.exchange.compile_model import compiled
 from cagepose.exchange.extra import mujoco
 from cagepose.exchange.model_bodies import WORLD_BODY, ModelBodies
@@ -28,7 +28,6 @@ from cagepose.model.wording import few
 Data = dict[str, Any]
 """What is known of a geom, or of a part of a scene file."""
 
-KEPT = ("method", "metric", "planar", "tolerances")
 OBJECT = "object"
 """The object's body in files that we write."""
 MOST_GEOMS = 2_000
@@ -139,7 +138,7 @@ class _Reader:
         found |= self.friction(parts, [geom for geom in walls if geom["label"] not in inside])
         if left_out + inside:
             found["left_out"] = left_out + inside
-        return found | {key: beside[key] for key in KEPT if key in beside}
+        return found | {key: beside[key] for key in SETTINGS if key in beside}
 
     def refuse_nothing(self, of_object: set[int], of_cage: set[int], is_unknown: bool) -> None:
         """

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cagepose.errors import FileProblem, SceneError, SceneFileError
+from cagepose.exchange.beside import SETTINGS
 from cagepose.exchange.imported_part import ImportedPart
 from cagepose.exchange.solids_note import SHOWN, read_solids_note
 from cagepose.exchange.source_solids import SOLIDS, source_solids
@@ -92,7 +93,7 @@ def solids_document(
     found |= kept_friction(note, elements)
     lost = [one for one in note["friction"]["of"] if not any(is_of(name, one) for name in elements)]
     notes += [f"friction of {few(lost)} is lost, as nothing there has the name"] if lost else []
-    kept = {key: note[key] for key in ("method", "metric", "planar", "tolerances") if key in note}
+    kept = {key: note[key] for key in SETTINGS if key in note}
     return SceneData(found | kept, notes, tuple(parts))
 
 

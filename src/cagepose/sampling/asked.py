@@ -11,6 +11,7 @@ import numpy as np
 from cagepose.files.schema_study import Question
 from cagepose.files.units import LengthUnit, from_metres
 from cagepose.model.checks import FloatArray
+from cagepose.model.planar import held_freedoms
 from cagepose.model.scene import Scene
 from cagepose.questions.friction import friction_limits
 from cagepose.questions.jam import jam
@@ -79,11 +80,13 @@ def _columns(question: Question, scene: Scene, unit: LengthUnit) -> list[AskedCo
             AskedColumn("margin_force", force, SAME_SHARE),
             AskedColumn("margin_moment", f"{force} {unit}", same_moment),
         ]
+    held = held_freedoms(scene.planar)
     return [
         AskedColumn(f"play_{freedom}_{end}", unit, length)
         if place < N_LENGTHS
         else AskedColumn(f"play_{freedom}_deg_{end}", "deg", SAME_ANGLE_DEG)
         for place, freedom in enumerate(FREEDOMS)
+        if held[place] == 0.0
         for end in ("low", "high")
     ]
 
@@ -107,10 +110,11 @@ def _jam(run: Run, _: LengthUnit) -> list[float]:
 
 def _play(run: Run, unit: LengthUnit) -> list[float]:
     """Without the search for a way out, which takes seconds and hangs on how fast the machine is."""
-    ranges = play(run.scene, search_s=0.0).freedoms
-    ends = [_end(end, sign) for one in ranges.values() for end, sign in ((one.low, -1.0), (one.high, 1.0))]
-    lengths, angles = np.array(ends[: 2 * N_LENGTHS]), np.array(ends[2 * N_LENGTHS :])
-    return [*from_metres(lengths, unit).tolist(), *np.degrees(angles).tolist()]
+    return [
+        float(from_metres(found, unit) if freedom in FREEDOMS[:N_LENGTHS] else np.degrees(found))
+        for freedom, one in play(run.scene, search_s=0.0).freedoms.items()
+        for found in (_end(one.low, -1.0), _end(one.high, 1.0))
+    ]
 
 
 def _end(end: PlayEnd, sign: float) -> float:

@@ -13,9 +13,6 @@ from cagepose.model.scene import Scene
 from cagepose.model.wording import few
 from cagepose.studies.play_frame import FREEDOMS, N_LENGTHS
 
-SOME_TURNS = (1,)
-"""So many of the turns held leave two: to hold one of two in a row depends on their order, so that no pose is meant."""
-
 
 def held_for_play(scene: Scene, hold: Sequence[str]) -> FloatArray:
     """Return 1 for each freedom that a scene or the question holds, else 0, (6,), in the order of `FREEDOMS`.
@@ -32,10 +29,11 @@ def held_for_play(scene: Scene, hold: Sequence[str]) -> FloatArray:
     unknown = [name for name in hold if name not in FREEDOMS]
     problems = []
     if unknown:
-        problems.append(f"has {few(unknown)}; the freedoms are {few(FREEDOMS, len(FREEDOMS))}")
+        named = few(name or "an empty name" for name in unknown)
+        problems.append(f"has {named}; the freedoms are {few(FREEDOMS, len(FREEDOMS))}")
     else:
         held[[FREEDOMS.index(name) for name in hold]] = 1.0
-        if held[N_LENGTHS:].sum() in SOME_TURNS:
+        if held[N_LENGTHS:].sum() == 1.0:  # to hold one of three turns in a row depends on their order
             problems.append("leaves two turns of three, which no pose can be told by; hold two of them, or all three")
     rotation = scene.cage.pose_world_cage.rotation
     if np.abs(rotation - np.eye(N_LENGTHS)).max() > LEAST_TILT:

@@ -65,7 +65,7 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
         elif isinstance(part, Shape) and (piece := _piece_of(part, number)) is not None:
             polyhedra[number], pieces[number] = part, piece
         else:
-            blocks.append(_lone_block(_Placed(_key_of(part), part, number)))
+            blocks.append(_lone_block(_Placed(_key_of(part), part, None, number)))
     for group in surface_groups(polyhedra, touch_m):
         members = sorted(group)
         alone = polyhedra[members[0]]
@@ -80,7 +80,7 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
         members = sorted(group)
         if len(members) == 1:
             part = polyhedra[members[0]]
-            blocks.append(_lone_block(_Placed(_key_of(part), part, members[0])))
+            blocks.append(_lone_block(_Placed(_key_of(part), part, pieces[members[0]], members[0])))
         else:
             blocks.append(union_block(union_of([pieces[number] for number in members], touch_m), group))
     return packed([_with_holes(block, every, holes) for block in blocks], every, touch_m)
@@ -88,10 +88,13 @@ def boundary_of(parts: Iterable[Shape | FloatArray], touch_m: float) -> Boundary
 
 @dataclass(frozen=True)
 class _Placed:
-    """A part that is no hole, its number, and its form and place, by which it is known again."""
+    """A part that is no hole, as a convex piece if it is a sharp polyhedron, its number, and its form and place, by
+    which it is known again.
+    """
 
     key: tuple[object, ...]
     part: Shape | FloatArray = field(compare=False)
+    piece: ConvexPiece | None = field(compare=False)
     number: int
 
 
@@ -104,10 +107,10 @@ def _lone_block(placed: _Placed) -> Block:
     """Return the features of a part that is united with no other. Those of the last ones are remembered: what changes
     from scene to scene of a study is few of its parts.
     """
-    own, piece = frozenset((placed.number,)), _piece_of(placed.part, placed.number)
-    if piece is None:
+    own = frozenset((placed.number,))
+    if placed.piece is None:
         return block_of(_rows_of(placed.part, placed.number), own)
-    return union_block(boundary_apart([piece]), own)
+    return union_block(boundary_apart([placed.piece]), own)
 
 
 def _with_holes(block: Block, parts: Sequence[Shape | FloatArray], holes: Sequence[Hole]) -> Block:
