@@ -22,7 +22,6 @@ from cagepose import (
     Variation,
     certificate,
     check_certificate,
-    escape_energy,
     load_run,
     load_scene,
     margin,
@@ -136,10 +135,6 @@ def test_what_is_not_known_in_a_plane_is_refused(scene, says):
     with pytest.raises(SceneError) as raised:
         scene()
     assert says in str(raised.value)
-
-
-def test_a_way_out_is_not_searched_for_in_six_freedoms():
-    assert isinstance(escape_energy(run(block())), Unanswered)
 
 
 def ladder(friction: float) -> Scene:

@@ -16,12 +16,16 @@ def ask_escape(
     *,
     phase: PhaseOption = None,
     motions: Annotated[
-        int, Parameter(help="How many motions the search for a way out that takes less work tries.")
-    ] = 20_000,
+        int | None,
+        Parameter(
+            help="How many motions the search for a way out that takes less work tries; left out: 20,000. In a plane,"
+            " at how many poses it asks; left out: 60,000."
+        ),
+    ] = None,
     set_values: SetOption = (),
     json: JsonOption = False,
 ) -> int:
-    """Print at most how much work against the load gets the part out from where it rests, and the way."""
+    """Print how much work against the load gets the part out from where it rests, and the way."""
     asked = run_asked(scene, set_values)
     if asked is None:
         return 2
@@ -29,5 +33,5 @@ def ask_escape(
     from cagepose.files.progress import tell
     from cagepose.questions.escape import escape_energy
 
-    tell(f"searching for ways out that take little work ({motions} motions)")
+    tell("searching for ways out that take little work (some seconds)")
     return asked.tell(lambda run: escape_energy(run, phase, n_motions=motions), answers, json)

@@ -15,6 +15,7 @@ from cagepose.model.checks import FloatArray, expect, expect_count
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.questions.ends import moved_before, phase_asked
+from cagepose.questions.plane_escape import ENDLESS, N_POSES, has_endless_holes, least_work_in_plane
 from cagepose.questions.unanswered import Unanswered
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import AT_REST, Motion, Run
@@ -42,19 +43,22 @@ class EscapeEnergy:
         At whose end the part is, and whose load acts.
     at_least_j
         No way out takes less, joules; metres times the load where that has no newtons. Infinite: it is proven that
-        there is no way out. Zero: no more is known.
+        there is no way out. Zero: no more is known, as in all scenes that move in space.
     at_most_j
         The path takes this much. Infinite: none was found.
     in_newtons
         Whether the load is in newtons.
     path
-        The way out that was found, free of contact; empty: none.
+        The way out that was found, free of contact; empty: none. In a plane, its first two motions lead to a pose that
+        is free, nearer to where the phase ended than a thousandth of the object's reach.
     top
         The object's pose in the world where the load has least work done, on that path; None: there is none.
     n_ways
         So many ways out were found, each better than the one before.
     n_tried
-        Motions that the search tried.
+        Motions that the search tried; in a plane, poses at which it asked whether the object is free.
+    in_plane
+        Whether the scene moves in a plane.
     """
 
     phase: str
@@ -65,13 +69,18 @@ class EscapeEnergy:
     top: Pose | None
     n_ways: int
     n_tried: int
+    in_plane: bool = False
 
     def __repr__(self) -> str:
         return f"<EscapeEnergy: {self.at_least_j:.6g} to {self.at_most_j:.6g} J>"
 
 
 def escape_energy(
-    run: Run, phase: str | None = None, *, n_motions: int = N_MOTIONS, progress: Callable[[float], None] | None = None
+    run: Run,
+    phase: str | None = None,
+    *,
+    n_motions: int | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> EscapeEnergy | Unanswered:
     """Return how much work it takes to get the object out from where a phase left it, against the phase's load.
 
@@ -79,12 +88,16 @@ def escape_energy(
     cut off, and the search goes on below. So the answer is at most what the best way takes, and a longer search finds
     better ones. Friction does not count. That there is no way out at all is a proof (`cagepose.play`).
 
+    In a plane (`Scene.planar`) all ways are asked about at once, of parts and cages of any shape, so that the answer
+    has a lower bound, too.
+
     Parameters
     ----------
     phase
         Its name; None: the last.
     n_motions
-        How many the search tries, unless it finds a way that takes no work; the same ones each time.
+        How many the search tries, unless it finds a way that takes no work; the same ones each time. In a plane, at how
+        many poses it asks. None: 20,000 and 60,000.
     progress
         Called with the share of them that were tried.
 
@@ -94,7 +107,8 @@ def escape_energy(
         The run has no such phase, or no count of motions.
     """
     expect(run, Run, "run")
-    expect_count(n_motions, "n_motions")
+    if n_motions is not None:
+        expect_count(n_motions, "n_motions")
     number = phase_asked(run, phase)
     ended, scene, load = run.phases[number], run.scene, run.scene.loads[number]
     if ended.verdict not in AT_REST:
@@ -106,16 +120,30 @@ def escape_energy(
     weighed = scaled_load(scene, load)
     if play(scene, search_s=0.0).verdict == "caged":
         return EscapeEnergy(load.name, math.inf, math.inf, weighed.in_newtons, (), None, 0, 0)
+    points = np.array([scene.object.center_of_gravity_m, *(push.at_object(ended.pose) for push in load.pushes)])
+    forces, rested = np.array([weighed.gravity, *weighed.forces]).reshape(-1, 3), scene.object.starting_at(ended.pose)
     if scene.planar is not None:
-        return Unanswered("a way out is searched in all six freedoms, of which this scene's plane holds three")
+        if has_endless_holes(scene):
+            return Unanswered(ENDLESS)
+        n_poses = N_POSES if n_motions is None else n_motions
+        found = least_work_in_plane(scene.but_for(object=rested), forces, points, n_poses, progress)
+        return EscapeEnergy(
+            load.name,
+            found.at_least_j,
+            found.at_most_j,
+            weighed.in_newtons,
+            found.path,
+            found.top,
+            found.n_ways,
+            found.n_asked,
+            in_plane=True,
+        )
     if scene.has_other_shapes:
         return Unanswered(
             "a way out is searched for boxes among points alone, and no proof was found that there is none"
         )
-    points = [scene.object.center_of_gravity_m, *(push.at_object(ended.pose) for push in load.pushes)]
-    work = _Work(np.array([weighed.gravity, *weighed.forces]).reshape(-1, 3), np.array(points))
-    search = _Search(scene.but_for(object=scene.object.starting_at(ended.pose)), work)
-    search.go_on(n_motions, progress)
+    search = _Search(scene.but_for(object=rested), _Work(forces, points))
+    search.go_on(N_MOTIONS if n_motions is None else n_motions, progress)
     return EscapeEnergy(
         load.name, 0.0, search.least_j, weighed.in_newtons, search.path, search.top, search.n_ways, search.n_tried
     )

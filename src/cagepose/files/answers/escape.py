@@ -13,11 +13,17 @@ def lines(answer: EscapeEnergy, words: LengthWords) -> list[tuple[str, str]]:
     told = [("at the end of", answer.phase)]
     if math.isinf(answer.at_least_j):
         return [*told, ("energy", "no work gets it out: it is proven to be caged")]
-    tried = ("tried", f"{answer.n_tried} motions")
-    if math.isinf(answer.at_most_j):
-        return [*told, ("energy", "not known: no way out was found, and no proof that there is none"), tried]
+    tried = ("asked", f"at {answer.n_tried} poses") if answer.in_plane else ("tried", f"{answer.n_tried} motions")
     unit = f"N {words.unit}" if answer.in_newtons else f"{words.unit} times the load"
-    energy = f"at most {words.scaled(answer.at_most_j, 0.0)} {unit}, by a way that was found; no lower bound is known"
+    least, most = (words.scaled(energy, 0.0) for energy in (answer.at_least_j, answer.at_most_j))
+    if math.isinf(answer.at_most_j):
+        energy = "not known: no way out was found, and no proof that there is none"
+        if answer.at_least_j > 0.0:
+            energy = f"at least {least} {unit}, as no way out takes less; none was found"
+        return [*told, ("energy", energy), tried]
+    energy = f"at most {most} {unit}, by a way that was found; no lower bound is known"
+    if answer.at_least_j > 0.0:
+        energy = f"at least {least} {unit}, as no way out takes less; at most {most}, by a way that was found"
     steps = [
         ("way out" if number == 0 else "", f"{step.motion.kind} {line_of(step.motion)} {words.amount(step.motion)}")
         for number, step in enumerate(answer.path)

@@ -17,5 +17,6 @@ def lines(answer: CriticalGap, words: LengthWords) -> list[tuple[str, str]]:
         caged = f"at {answer.caged_at:.{DIGITS}g} (proven)"
     if answer.escapes_at is not None:
         escapes = f"at {answer.escapes_at:.{DIGITS}g} (by a way that was found)"
-    tried = f"{number_of(answer.n_tried, 'value')}, up to {answer.n_motions} motions at each"
+    what = "poses" if answer.in_plane else "motions"
+    tried = f"{number_of(answer.n_tried, 'value')}, up to {answer.n_motions} {what} at each"
     return [("caged", caged), ("escapes", escapes), ("tried", tried)]

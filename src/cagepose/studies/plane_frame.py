@@ -1,0 +1,191 @@
+"""Poses of a part in its plane as three numbers, and bounds for all poses near one: `PlaneFrame`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from cagepose.kernels.algebra.pose import Quaternion
+from cagepose.kernels.algebra.vector import Vector
+from cagepose.kernels.boundary.features import Boundary
+from cagepose.model.checks import FloatArray
+from cagepose.model.facets import Facets
+from cagepose.model.planar import normal_axis
+from cagepose.model.pose import Pose
+from cagepose.model.scene import Scene
+from cagepose.model.shapes import Shape
+
+N_WAYS = 256
+"""Directions in the plane along which it is asked how far parts reach."""
+BEYOND = 1.0 / math.cos(math.pi / N_WAYS)
+"""Nothing reaches farther between two of them, times that along them."""
+
+
+class InPlane(NamedTuple):
+    """A pose: the place of the object's middle along the two axes of the plane, metres, and the turn from where it
+    starts, radians.
+    """
+
+    u: float
+    v: float
+    turn: float
+
+
+class Block(NamedTuple):
+    """All poses that differ from one by no more than ``half_m`` along either axis and ``half_rad`` in the turn."""
+
+    middle: InPlane
+    half_m: float
+    half_rad: float
+
+
+class PlaneFrame:
+    """A scene's plane, what moves in it, and the work of a load there.
+
+    Attributes
+    ----------
+    start
+        The pose at which the object starts.
+    reach_m
+        No point of the object is farther from its middle, as seen along the plane's normal, metres.
+    load
+        The sum of the sizes of all forces in the plane.
+    center, outside_m
+        Where the object's middle is farther than ``outside_m`` from there, (2,), nothing of the cage is in its reach.
+    """
+
+    def __init__(self, scene: Scene, forces: FloatArray, points_object: FloatArray) -> None:
+        """``forces`` (n, 3) act at points (n, 3) of the object and keep their direction."""
+        assert scene.planar is not None
+        self._normal = normal_axis(scene.planar)
+        self._axes = [axis for axis in range(3) if axis != self._normal]
+        self._sense = -1.0 if self._normal == 1 else 1.0  # about y, z turns toward x
+        held, cage = scene.object, scene.cage
+        pose = held.pose_world_object
+        around, ways = np.linspace(0.0, 2.0 * math.pi, N_WAYS, endpoint=False), np.zeros((N_WAYS, 3))
+        ways[:, self._axes] = np.stack([np.cos(around), np.sin(around)], axis=1)
+        heights = _heights(held.parts, scene.geometry.held, ways @ pose.rotation)
+        self._arm, self.reach_m = _circle_around(ways, heights)
+        at = cage.pose_world_cage
+        heights = _heights(cage.shapes, scene.geometry.cage.own, ways @ at.rotation)
+        heights = np.maximum(heights, (ways @ at.rotation @ cage.points_cage.T).max(axis=1, initial=-np.inf))
+        center, radius_m = _circle_around(ways, heights + ways @ at.position_m)
+        self.center, self.outside_m = center[self._axes], radius_m + self.reach_m
+        self._quaternion, self._level = pose.as_tuples()[1], float((pose.position_m + self._arm)[self._normal])
+        place = (pose.position_m + self._arm)[self._axes]
+        self.start = InPlane(float(place[0]), float(place[1]), 0.0)
+        # Of a turn, the forces' work is C cos + S sin of the angle.
+        arms = (points_object @ pose.rotation.T - self._arm)[:, self._axes]
+        acting = forces[:, self._axes]
+        self._force = (float(acting[:, 0].sum()), float(acting[:, 1].sum()))
+        self.load = float(np.linalg.norm(acting, axis=1).sum())
+        even = float((acting * arms).sum())
+        odd = self._sense * float((acting * np.stack([-arms[:, 1], arms[:, 0]], axis=1)).sum())
+        self._swing, self._phase = math.hypot(even, odd), math.atan2(odd, even)
+
+    def pose_of(self, at: InPlane) -> tuple[Vector, Quaternion]:
+        """Return a pose as kernels take it."""
+        cosine, sine = math.cos(at.turn), self._sense * math.sin(at.turn)
+        a, b = (float(self._arm[axis]) for axis in self._axes)
+        position = [0.0, 0.0, 0.0]
+        position[self._axes[0]] = at.u - (cosine * a - sine * b)
+        position[self._axes[1]] = at.v - (sine * a + cosine * b)
+        position[self._normal] = self._level - float(self._arm[self._normal])
+        half, c = math.sin(0.5 * at.turn), math.cos(0.5 * at.turn)
+        w, x, y, z = self._quaternion
+        if self._normal == 0:
+            turned = (c * w - half * x, c * x + half * w, c * y - half * z, c * z + half * y)
+        elif self._normal == 1:
+            turned = (c * w - half * y, c * x + half * z, c * y + half * w, c * z - half * x)
+        else:
+            turned = (c * w - half * z, c * x - half * y, c * y + half * x, c * z + half * w)
+        return (position[0], position[1], position[2]), turned
+
+    def pose(self, at: InPlane) -> Pose:
+        return Pose(*self.pose_of(at))
+
+    def goes_by(self, block: Block) -> float:
+        """Return how far any point of the object moves at most, from the middle of a block to a pose of it, metres."""
+        turned = 2.0 * self.reach_m * math.sin(min(0.5 * block.half_rad, 0.5 * math.pi))
+        return math.sqrt(2.0) * block.half_m + turned
+
+    def apart(self, one: InPlane, other: InPlane) -> float:
+        """Return how far any point of the object is at one pose from where it is at another, at most, metres."""
+        turn = abs((one.turn - other.turn + math.pi) % (2.0 * math.pi) - math.pi)
+        return math.hypot(one.u - other.u, one.v - other.v) + 2.0 * self.reach_m * math.sin(0.5 * turn)
+
+    def may_be_outside(self, block: Block) -> bool:
+        """Whether a pose of a block is out of reach of the cage."""
+        u, v = (abs(at - float(to)) + block.half_m for at, to in zip(block.middle[:2], self.center, strict=True))
+        return bool(math.hypot(u, v) >= self.outside_m)
+
+    def from_center(self, at: InPlane) -> float:
+        """Return how far the object's middle is from that of the cage, metres."""
+        return math.hypot(at.u - float(self.center[0]), at.v - float(self.center[1]))
+
+    def place(self, at: InPlane) -> FloatArray:
+        """Return where the object's middle is in the world, (3,), metres."""
+        found = np.zeros(3)
+        found[self._axes], found[self._normal] = at[:2], self._level
+        return found
+
+    @property
+    def normal(self) -> FloatArray:
+        """The axis of the world that turns are about, (3,)."""
+        axis: FloatArray = np.eye(3)[self._normal]
+        return axis
+
+    def potential(self, at: InPlane) -> float:
+        """Return the work against the load from where its points are in the middle, joules."""
+        return -self._force[0] * at.u - self._force[1] * at.v - self._swing * math.cos(at.turn - self._phase)
+
+    def highest(self, begin: InPlane, end: InPlane) -> float:
+        """Return the greatest potential on a turn, or on a travel, from one pose to another."""
+        turned = Block(begin._replace(turn=0.5 * (begin.turn + end.turn)), 0.0, 0.5 * abs(end.turn - begin.turn))
+        return max(self.potentials(turned)[1], self.potential(end))
+
+    def potentials(self, block: Block) -> tuple[float, float]:
+        """Return the least and the greatest potential in a block."""
+        u, v, turn = block.middle
+        level = -self._force[0] * u - self._force[1] * v
+        spread = (abs(self._force[0]) + abs(self._force[1])) * block.half_m
+        away = abs((turn - self._phase + math.pi) % (2.0 * math.pi) - math.pi)
+        near, far = max(0.0, away - block.half_rad), min(math.pi, away + block.half_rad)
+        return level - spread - self._swing * math.cos(near), level + spread - self._swing * math.cos(far)
+
+
+def nearest_in(block: Block, at: InPlane) -> InPlane:
+    """Return the pose of a block that is nearest to one."""
+    u, v, turn = block.middle
+    away = (at.turn - turn + math.pi) % (2.0 * math.pi) - math.pi
+    return InPlane(
+        min(max(at.u, u - block.half_m), u + block.half_m),
+        min(max(at.v, v - block.half_m), v + block.half_m),
+        turn + min(max(away, -block.half_rad), block.half_rad),
+    )
+
+
+def _heights(parts: Sequence[Shape], boundary: Boundary, ways: FloatArray) -> FloatArray:
+    """Return how far parts reach along directions (n, 3) of their body's frame, metres: round ones of triangles as far
+    as the boxes around their features.
+    """
+    if not any(isinstance(part, Facets) and part.is_round for part in parts):
+        highest: FloatArray = np.max([part.heights_m(ways) for part in parts], axis=0, initial=-np.inf)
+        return highest
+    boxes = np.asarray(boundary.nodes)
+    boxes = boxes[(boxes["left"] < 0) & (boxes["first"] < boxes["last"])]
+    heights: FloatArray = (ways @ boxes["middle"].T + np.abs(ways) @ boxes["half"].T).max(axis=1)
+    return heights
+
+
+def _circle_around(ways: FloatArray, heights: FloatArray) -> tuple[FloatArray, float]:
+    """Return the middle of what reaches so high along directions all around, (3,), and the radius of a circle around it
+    there.
+    """
+    quarter = N_WAYS // 4
+    wide = [0.5 * (heights[k] - heights[k + 2 * quarter]) for k in (0, quarter)]
+    middle = wide[0] * ways[0] + wide[1] * ways[quarter]
+    return middle, BEYOND * float((heights - ways @ middle).max())
