@@ -45,7 +45,7 @@ def driven_phases(scene: Scene) -> list[tuple[Run, int]]:
 
 def test_no_forces_jam_where_none_can_and_some_could_where_some_do(cases, say) -> None:
     random, counts = np.random.default_rng(60), Counter[str]()
-    for index in range(cases(16, 800)):
+    for index in range(cases(16, 400)):
         for a_run, phase in driven_phases(drawn(random, KINDS[index % len(KINDS)])):
             counts[a_run.phases[phase].verdict] += 1
             for place, contacts in places_of(a_run, phase, random):
@@ -105,7 +105,7 @@ def test_no_mode_goes_on_where_a_drive_jams(drag: float, cases, say) -> None:
     drag alone.
     """
     random, n_jams, n_open = np.random.default_rng(62), 0, 0
-    n = cases(10, 400)
+    n = cases(10, 200)
     for index in range(n):
         heavy = wedge(friction=float(random.uniform(0.0, 1.2)), wall_friction=float(random.uniform(1.5, 3.0)))
         scene = heavy if index % 5 == 4 else drawer(random)

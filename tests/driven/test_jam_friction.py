@@ -69,7 +69,8 @@ def test_a_drawer_that_is_pulled_aside_says_where_it_probably_jams() -> None:
     # 2 mu e = 72 mm of it are left between the sides then, but for its turn; the finger comes to the handle after 2 mm.
     assert drive.share * 250.0 == pytest.approx(300.0 - 72.0 + 2.0, abs=3.0)
     if ended.verdict == "stalled":
-        assert any("it probably jams here, at 93" in warning for warning in ended.warnings)
+        told = f"it probably jams here, at {100.0 * drive.share:.4g} % of the drive"
+        assert any(told in warning for warning in ended.warnings)
 
 
 def block(size: tuple[float, float, float], place: tuple[float, float, float], name: str) -> Box:

@@ -115,8 +115,8 @@ def test_rows_of_every_scene_are_its_runs(run_study: RunStudy, path: Path) -> No
     vary: dict[str, Any] = {"friction.coefficient": {"uniform": [0, 0.2]}}
     if data["cage"].get("points"):
         vary["cage.points.*[2]"] = {"normal": {"sigma": 0.01}}
-    if data["object"].get("mass"):
-        vary["object.mass"] = {"uniform": [0.1, 1.0]}
+    if mass := data["object"].get("mass"):
+        vary["object.mass"] = {"uniform": [0.9 * mass, 1.1 * mass]}
     results = run_study(vary, 6, scene=path, forces=True)
     assert Runner(results.study).is_batch == ("object.mass" not in vary)
     compare_with_runs(results)

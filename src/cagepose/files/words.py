@@ -23,7 +23,7 @@ class LengthWords:
 
     def __init__(self, unit: LengthUnit, size_m: float) -> None:
         self.unit: LengthUnit = unit
-        self.noise = 1e-12 * float(from_metres(size_m, unit))
+        self.noise = 1e-10 * float(from_metres(size_m, unit))
 
     def lengths(self, lengths_m: Iterable[float]) -> str:
         """Return lengths in metres as ``1, 2.5, 0``, in the unit."""

@@ -19,7 +19,7 @@ from cagepose.model.methods import DEFAULT_METHOD, METHODS
 
 TESTS = Path(__file__).resolve().parents[2]
 SCENES = sorted((TESTS.parent / "scenes").glob("*.yaml"))
-SLOW_AS_PLAIN_PYTHON = ("rail", "ladder", "drawer", "tapered-pin", "dock", "grip.")
+SLOW_AS_PLAIN_PYTHON = ("rail", "ladder", "drawer", "tapered-pin", "dock", "grip.", "latch", "jaws")
 """They take a minute and more: proofs with friction, drives along rails and pads, and the pin's slide down the chamfer.
 """
 SECONDS_AS_PLAIN_PYTHON = ("phone-dock", "plate-on-pins")
