@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from cagepose import Box, Cage, Cylinder, Hole, Load, Object, Pose, Scene, SceneError, Sphere, run
+from cagepose import Box, Cage, Cylinder, Hole, Load, Object, Pose, Scene, SceneError, Sphere, play, run
 from cagepose.questions.escape import EscapeEnergy, escape_energy
 from cagepose.questions.gap import CriticalGap, _bracket, critical_gap
 from cagepose.questions.plane_escape import way_out_in_plane
@@ -46,6 +46,15 @@ def test_an_h_leaves_two_fingers_from_their_diagonal_on(gap_mm: float, is_out: b
     """From 26.926 mm on. It is held by large turns alone: of the linearised gaps nothing limits it."""
     assert math.hypot(25.0, 10.0) == pytest.approx(26.926, abs=1e-3)
     assert way_out_in_plane(letter_h(1e-3 * gap_mm), 80_000) is is_out
+
+
+def test_play_in_the_plane_proves_what_the_linearised_gaps_do_not() -> None:
+    caged, searched_not = play(letter_h(0.014)), play(letter_h(0.014), search_s=0.0)
+    assert (caged.verdict, searched_not.verdict) == ("caged", "not certified")
+    assert "every way out in the plane leads through" in caged.cage.reason
+    escapes = play(letter_h(0.030))
+    assert escapes.verdict == "escapes"
+    assert escapes.cage.path
 
 
 def test_a_roller_leaves_three_pins_that_are_farther_apart_than_it_is_wide() -> None:

@@ -15,12 +15,13 @@ from cagepose.model.checks import FloatArray, expect, expect_count
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.questions.ends import moved_before, phase_asked
-from cagepose.questions.plane_escape import ENDLESS, N_POSES, has_endless_holes, least_work_in_plane
+from cagepose.questions.plane_escape import ENDLESS, N_POSES, least_work_in_plane
 from cagepose.questions.unanswered import Unanswered
 from cagepose.runs.load_scaling import scaled_load
 from cagepose.runs.run import AT_REST, Motion, Run
 from cagepose.studies.cage_verdict import PathStep, step_to
 from cagepose.studies.free_motions import FreeMotions
+from cagepose.studies.plane_frame import has_endless_holes
 from cagepose.studies.play import play
 from cagepose.studies.play_frame import PlayFrame
 

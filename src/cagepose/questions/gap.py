@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from cagepose.errors import Problem, SceneError
 from cagepose.model.checks import expect_count, is_finite
 from cagepose.model.scene import Scene
-from cagepose.questions.plane_escape import ENDLESS, N_POSES, has_endless_holes, way_out_in_plane
+from cagepose.questions.plane_escape import ENDLESS, N_POSES, way_out_in_plane
 from cagepose.questions.unanswered import Unanswered
 from cagepose.studies.free_motions import MOTIONS_OF_BATCH, FreeMotions
+from cagepose.studies.plane_frame import has_endless_holes
 from cagepose.studies.play import play
 from cagepose.studies.play_frame import PlayFrame
 

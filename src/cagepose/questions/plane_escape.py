@@ -26,10 +26,6 @@ LEVEL = 1e-6
 ENDLESS = "a hole that stands alone is in a plate without end, out of whose reach nothing gets"
 
 
-def has_endless_holes(scene: Scene) -> bool:
-    return any(not hole.in_ for hole in (*scene.cage.holes, *scene.object.holes))
-
-
 def way_out_in_plane(scene: Scene, n_poses: int) -> bool | None:
     """Return whether there is a way out; None: it was not found out by asking at so many poses."""
     frame = PlaneFrame(scene, np.zeros((1, 3)), np.zeros((1, 3)))

@@ -60,7 +60,7 @@ class CageVerdict:
         "not certified" because a point leaves its face: the object's pose in the world, as linearised, at which the
         point is farthest off; None: any other verdict or reason.
     n_tried
-        Motions that the search tried.
+        Motions that the search tried; in a plane, poses at which it asked.
     """
 
     verdict: Caged

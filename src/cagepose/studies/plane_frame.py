@@ -157,6 +157,11 @@ class PlaneFrame:
         return level - spread - self._swing * math.cos(near), level + spread - self._swing * math.cos(far)
 
 
+def has_endless_holes(scene: Scene) -> bool:
+    """Whether a hole of a scene stands alone: its plate has no end, and so nothing gets out of its reach."""
+    return any(not hole.in_ for hole in (*scene.cage.holes, *scene.object.holes))
+
+
 def nearest_in(block: Block, at: InPlane) -> InPlane:
     """Return the pose of a block that is nearest to one."""
     u, v, turn = block.middle

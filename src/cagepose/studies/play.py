@@ -12,11 +12,14 @@ from numpy.typing import ArrayLike
 from cagepose.errors import Problem, SceneError
 from cagepose.model.checks import FloatArray, expect, finite_array, unit_vector
 from cagepose.model.planar import held_freedoms
+from cagepose.model.pose import Pose
 from cagepose.model.scene import FARTHEST_START, Scene, millimetres
 from cagepose.studies.bounds import Bounds
 from cagepose.studies.cage_verdict import CageVerdict, is_caged, judge_cage, why_not_caged
 from cagepose.studies.held import held_for_play
 from cagepose.studies.inner_cage import inner_scene
+from cagepose.studies.plane_frame import has_endless_holes
+from cagepose.studies.plane_verdict import judge_in_plane
 from cagepose.studies.play_frame import FREEDOMS, N_LENGTHS, PlayFrame, range_goals
 from cagepose.studies.play_result import Play, PlayEnd, PlayRange, PointPlay
 from cagepose.studies.polytope_play import MOST_STARTS, PolytopePlay
@@ -62,7 +65,7 @@ def play(
         Name of a phase: how far the object can move from where the scene's run comes to rest in it, while its load goes
         on, pushed a ten-thousandth as hard and without friction. None: from the start, without a load.
     search_s
-        Seconds for the search for a way out, if need be.
+        Seconds for the search for a way out, if need be; in a plane, it asks at 40,000 poses instead, unless this is 0.
     progress
         Called with the share of that time that has passed.
 
@@ -123,15 +126,21 @@ def _of_shapes(scene: Scene, held: FloatArray, shifts: Shifts, search_s: float, 
     if (held != held_freedoms(scene.planar)).any():  # what is held is the origin; without a load any centre will do
         scene = scene.changed("object.center_of_gravity", [0.0, 0.0, 0.0])
     pushed, inner = PushedPlay(scene, unseated(scene, held), shifts), inner_scene(scene)
+    in_plane = scene.planar is not None and (held == held_freedoms(scene.planar)).all() and not has_endless_holes(scene)
+
+    def judged(why_not: str, leaves_at: Pose | None) -> CageVerdict:
+        if in_plane and pushed.escape is None:
+            return judge_in_plane(scene, why_not, leaves_at, pushed.free_directions(), search_s > 0.0, progress)
+        return pushed.judge(why_not, leaves_at, search_s, progress)
+
     if inner is None:
-        cage = pushed.judge(NO_INNER_CAGE, None, search_s, progress)
-        return _Found(cage, pushed.ranges(), pushed.analysis_s, 0.0)
+        return _Found(judged(NO_INNER_CAGE, None), pushed.ranges(), pushed.analysis_s, 0.0)
     frame = PlayFrame(inner, held)
     bounds = Bounds(frame, range_goals(frame, shifts), inner.touch_m)
     if bounds.is_caged:
         cage = is_caged("a point of the cage's shapes")
     else:
-        cage = pushed.judge(*why_not_caged(inner, frame, bounds, pushed.free_directions()), search_s, progress)
+        cage = judged(*why_not_caged(inner, frame, bounds, pushed.free_directions()))
     return _Found(cage, _bounded(pushed.ranges(), bounds.ends), pushed.analysis_s, bounds.certificate_s)
 
 
