@@ -117,11 +117,12 @@ def scene_size(held: Object, cage: Cage) -> float:
 
 def sizes_with_points(held: Object, cage: Cage, points_cage: FloatArray) -> FloatArray:
     """The sizes of scenes whose cage has other points, (n, n_points, 3), metres; (n,)."""
-    if not cage.shapes:
+    shapes = (*cage.shapes, *cage.holes)
+    if not shapes:
         sizes: FloatArray = np.maximum(object_size(held), cage_sizes(points_cage))
         return sizes
-    nodes = np.concatenate([shape.nodes_body() for shape in cage.shapes])
-    of_cage = [_body_size(np.concatenate([points, nodes]), cage.shapes) for points in points_cage]
+    nodes = np.concatenate([shape.nodes_body() for shape in shapes])
+    of_cage = [_body_size(np.concatenate([points, nodes]), shapes) for points in points_cage]
     with_shapes: FloatArray = np.maximum(object_size(held), np.array(of_cage))
     return with_shapes
 
