@@ -1,11 +1,11 @@
-"""Scenes with shapes, which tests of views share."""
+"""Scenes with shapes, and shapes that are drawn, which tests share."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from cagepose import Box, Cage, Load, Object, Pose, Scene
-from cagepose.model.shapes import AnyShape, Capsule, Sphere
+from cagepose.model.shapes import AnyShape, Capsule, Cone, Convex, Cylinder, Sphere
 
 WEIGHT = Load("weight", gravity=(0, 0, -1))
 ALONG_X = Pose(euler_zyx=(0, np.pi / 2, 0))
@@ -44,3 +44,24 @@ def block_on_balls() -> Scene:
     balls = [Sphere(0.005, Pose(place)) for place in places]
     start = Pose((0, 0, 0.06), euler_zyx=np.radians((10.0, 25.0, 18.0)))
     return Scene(held(Box((0.04, 0.03, 0.02)), start=start), Cage(shapes=balls), [WEIGHT], name="block")
+
+
+def drawn_shape(random: np.random.Generator) -> Box | AnyShape:
+    size = random.uniform(0.004, 0.02, 3)
+    turned = Pose(euler_zyx=random.uniform(-3, 3, 3))
+    return (
+        Box(size, turned),
+        Sphere(size[0], turned),
+        Capsule(size[0], size[1], turned),
+        Cylinder(size[0], size[1], turned),
+        Cone(size[0], size[1] / 3.0, size[2], turned),
+        Convex(random.normal(size=(7, 3)) * size, 0.0, turned),
+        Convex(random.normal(size=(5, 3)) * size, 0.003, turned),
+    )[int(random.integers(7))]
+
+
+def placed_apart(random: np.random.Generator, shape: Box | AnyShape, away: float) -> Box | AnyShape:
+    way = random.normal(size=3)
+    place = away * way / np.linalg.norm(way)
+    pose = Pose(place) @ shape.pose_body_shape
+    return Box(shape.size_m, pose) if isinstance(shape, Box) else shape.moved(pose)

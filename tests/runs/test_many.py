@@ -10,7 +10,22 @@ import numpy as np
 import pytest
 
 import cagepose
-from cagepose import Box, Cage, Force, Load, Object, Pose, Scene, SceneError, Variation, load_scene, run, run_many
+from cagepose import (
+    Box,
+    Cage,
+    Force,
+    Hole,
+    Load,
+    Object,
+    Pose,
+    Scene,
+    SceneError,
+    Variation,
+    load_scene,
+    run,
+    run_many,
+)
+from cagepose.model.geometry import sizes_with_points
 from cagepose.model.methods import METHODS
 from cagepose.runs import many
 from rails import rail_scene
@@ -267,3 +282,14 @@ def test_arrays_that_machine_code_does_not_take_are_copied(name: str, method: st
     expected, found = (run_many(block(), Variation(**{name: given}), method=method) for given in (values, otherwise))
     assert np.array_equal(found.position_m, expected.position_m)
     assert np.array_equal(found.quaternion_wxyz, expected.quaternion_wxyz)
+
+
+def test_a_scene_whose_points_vary_is_as_large_with_its_holes_as_one_that_is_built() -> None:
+    """The touch tolerance hangs on it."""
+    plate = Box((60 * MM, 60 * MM, 30 * MM), Pose((0, 0, -15 * MM)), "plate")
+    bore = Hole(10 * MM, 30 * MM, in_=["plate"])
+    held = Object([Box((MM, MM, MM))], pose=Pose((0, 0, 10 * MM)))
+    for holes, shapes in (([bore], [plate]), ([Hole(10 * MM, 30 * MM)], []), ([], [plate]), ([], [])):
+        cage = Cage([(100 * MM, 0, 0), (0, 80 * MM, 0)], shapes=shapes, holes=holes)
+        scene = Scene(held, cage, [Load("weight", gravity=(0, 0, -1))])
+        assert sizes_with_points(held, cage, cage.points_cage[None]).tolist() == [scene.size_m]

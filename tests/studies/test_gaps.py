@@ -10,11 +10,11 @@ import pytest
 from cagepose import Box, Cage, Hole, Object, Pose, Scene
 from cagepose.model.checks import FloatArray
 from cagepose.model.facets import Facets
-from cagepose.model.shapes import AnyShape, Capsule, Cone, Convex, Cylinder, Sphere
+from cagepose.model.shapes import AnyShape, Convex, Cylinder, Sphere
 from cagepose.runs.driven_cage import cage_at_start
 from cagepose.studies.gaps import GapFinder, Gaps
 from cagepose.views.viewer.surface import nearest_on_object
-from shaped_scenes import WEIGHT, held
+from shaped_scenes import WEIGHT, drawn_shape, held, placed_apart
 
 UP_X = Pose(euler_zyx=(0, math.pi / 2, 0))
 
@@ -81,6 +81,20 @@ def test_a_pin_in_a_hole_has_the_least_and_the_greatest_gap_of_its_play():
     assert sorted(set(across.round(12))) == pytest.approx([0.00015, 0.00025])
     places = found.others_world[found.elements == scene.cage.element_names.index("bore")][bore < 0.001]
     assert np.hypot(*places.T[:2]) == pytest.approx(np.full(len(across), 0.01))
+
+
+@pytest.mark.parametrize(
+    ("part", "height", "gap"),
+    [(Sphere(0.0095), -0.01, 0.0005), (Cylinder(0.005, 0.01), 0.01, math.hypot(0.005, 0.005))],
+    ids=["a ball in it", "a can over it"],
+)
+def test_what_is_exactly_on_the_axis_of_a_hole_has_a_gap_to_it(part, height, gap):
+    """As wide all around: the wall of the ball, the two edges of the can."""
+    block = Box((0.06, 0.06, 0.03), Pose((0, 0, -0.015)), "block")
+    cage = Cage(shapes=[block], holes=[Hole(0.01, 0.02, in_=["block"], name="bore")])
+    found = gaps_of(Scene(held(part, start=Pose((0.0, 0.0, height))), cage, [WEIGHT]))
+    assert cage.element_names[found.elements[0]] == "bore"
+    assert found.gaps_m[0] == pytest.approx(gap, rel=1e-12)
 
 
 def test_a_hole_is_no_part_of_the_plate_that_it_is_in():
@@ -151,27 +165,6 @@ def test_of_bodies_of_thousands_of_triangles_the_narrowest_gap_is_told():
     least = float(np.linalg.norm(near.places_world - near.feet_world))
     assert 0.002 < least < 0.006
     assert gaps_of(scene).gaps_m[0] == pytest.approx(least, rel=1e-9)
-
-
-def drawn_shape(random: np.random.Generator) -> Box | AnyShape:
-    size = random.uniform(0.004, 0.02, 3)
-    turned = Pose(euler_zyx=random.uniform(-3, 3, 3))
-    return (
-        Box(size, turned),
-        Sphere(size[0], turned),
-        Capsule(size[0], size[1], turned),
-        Cylinder(size[0], size[1], turned),
-        Cone(size[0], size[1] / 3.0, size[2], turned),
-        Convex(random.normal(size=(7, 3)) * size, 0.0, turned),
-        Convex(random.normal(size=(5, 3)) * size, 0.003, turned),
-    )[int(random.integers(7))]
-
-
-def placed_apart(random: np.random.Generator, shape: Box | AnyShape, away: float) -> Box | AnyShape:
-    way = random.normal(size=3)
-    place = away * way / np.linalg.norm(way)
-    pose = Pose(place) @ shape.pose_body_shape
-    return Box(shape.size_m, pose) if isinstance(shape, Box) else shape.moved(pose)
 
 
 def least_of_each(found: Gaps, n_elements: int) -> FloatArray:

@@ -13,6 +13,9 @@ MOST_RUNS = 2**30
 Question = Literal["friction", "margin", "jam", "play"]
 """What can be asked of each run."""
 DISTRIBUTIONS = ("uniform", "normal", "triangular", "grid", "steps")
+WATCHED = ("point", "gap", "angle", "distance")
+Pair = Annotated[list[str], Field(min_length=2, max_length=2)]
+"""A name of the cage, and one of the object."""
 
 
 def _ordered(limits: list[float]) -> list[float]:
@@ -122,10 +125,49 @@ class SampleModel(Mapping):
 
 
 class WatchModel(Mapping):
-    """A point that is followed."""
+    """What is followed: one of these keys."""
 
-    point: Vector = Field(description="In the object's frame and the scene's unit.", examples=[[600, 0, 0]])
-    of: Literal["object"] = Field("object", description="What the point is fixed to.")
+    point: Vector | None = Field(
+        None, description="A point, in the object's frame and the scene's unit.", examples=[[600, 0, 0]]
+    )
+    of: Literal["object"] | None = Field(None, description="What the point is fixed to; left out: the object.")
+    gap: Pair | None = Field(
+        None,
+        description="How far a point, a shape, a hole or a body of the cage and a part of the object, or all of the"
+        " object, are apart; 0 where they touch.",
+        examples=[["left", "board"]],
+    )
+    angle: Pair | None = Field(
+        None,
+        description="The angle, up to 90 degrees, between an axis of the cage and one of the object: of round shapes by"
+        " their names, of others with .x, .y or .z; the world's and the object's own are world.z and object.z.",
+        examples=[["bore", "pin"]],
+    )
+    distance: Pair | None = Field(
+        None,
+        description="How far the places of a point or a shape of the cage and of a part of the object, or a watched"
+        " point, are apart; with .x, .y or .z behind one of them, how far the other is from that axis.",
+        examples=[["bore.z", "tip"]],
+    )
+
+    @model_validator(mode="after")
+    def _one(self) -> WatchModel:
+        given = [kind for kind in WATCHED if getattr(self, kind) is not None]
+        if len(given) != 1:
+            found = f"has both {given[0]} and {given[1]}" if given else "says nothing"
+            raise wrong(f"{found}; give one of: {', '.join(WATCHED)}")
+        if self.of is not None and self.point is None:
+            raise wrong("says of what it is, which a point alone does; leave of out")
+        return self
+
+    @property
+    def kind(self) -> str:
+        return next(kind for kind in WATCHED if getattr(self, kind) is not None)
+
+    @property
+    def pair(self) -> list[str]:
+        """The two names; of a point there are none."""
+        return self.gap or self.angle or self.distance or []
 
 
 class MapModel(Mapping):
@@ -161,7 +203,9 @@ class RunsModel(Mapping):
         examples=[{"parameters.play": {"uniform": [0.2, 1.0]}}],
     )
     watch: dict[ColumnName, WatchModel] | None = Field(
-        None, description="Points whose final places become columns.", examples=[{"tip": {"point": [600, 0, 0]}}]
+        None,
+        description="Points whose final places become columns, and gaps, angles and distances at the end that do.",
+        examples=[{"tip": {"point": [600, 0, 0]}}],
     )
     ask: Annotated[list[Question], Field(min_length=1), AfterValidator(_asked_once)] | None = Field(
         None,

@@ -27,6 +27,7 @@ from cagepose.files.scene_edit import with_values
 from cagepose.files.scene_file import SceneFile, SceneText, read_scene_text
 from cagepose.files.schema_study import DistributionModel, RunsModel, SampleModel, StudyModel
 from cagepose.files.units import unit_at
+from cagepose.files.watched import measures_of
 from cagepose.files.yaml_source import YamlSource, parse_yaml
 from cagepose.model.wording import few
 
@@ -147,12 +148,13 @@ def study_of(yaml: YamlSource, model: StudyModel, text: str, changed: str | None
         Lists every problem with its line and column.
     """
     scene_text = read_scene_text(Path(yaml.source).parent / model.scene)
-    scene_text.scene_file()  # its own problems first
+    scene = scene_text.scene_file().scene  # its own problems first
     problems: list[Problem] = []
     places = {key: ("change" if key == changed else "vary", key) for key in model.vary}
     varied = _varied_keys(model, places, scene_text.yaml.data, problems)
     _check_sample(model.sample, {key: one for key, one in model.vary.items() if key != changed}, problems)
     _check_map(model, varied, problems)
+    measures_of(scene, model.watch or {}, "m", problems)
     compute = {name: _formula(text, ("compute", name), problems) for name, text in (model.compute or {}).items()}
     accept = None if model.accept is None else _formula(model.accept, ("accept",), problems)
     if problems:

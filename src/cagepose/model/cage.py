@@ -114,6 +114,13 @@ class Cage:
         object.__setattr__(moved, "pose_world_cage", pose)
         return moved
 
+    def with_points(self, points_cage: FloatArray) -> Cage:
+        """Return the same cage, which has no bodies, with its points elsewhere, (n, 3)."""
+        moved = copy.copy(self)
+        object.__setattr__(moved, "points_cage", points_cage)
+        object.__setattr__(moved, "standing", self.standing._replace(points_m=points_cage))
+        return moved
+
     def __repr__(self) -> str:
         return f"<Cage: {self._contents}>"
 

@@ -20,6 +20,9 @@ from cagepose.model.parts import Object
 from cagepose.model.seams import PlacedBox, Seams, close_seams
 from cagepose.model.shapes import Shape
 
+Part = Shape | FloatArray
+"""A shape, a hole, or a point (3,)."""
+
 
 def object_seams(held: Object, touch_m: float) -> Seams:
     """Close the seams between boxes that meet flush within ``touch_m``.
@@ -55,6 +58,15 @@ def scene_geometry(held: Object, cage: Cage, touch_m: float) -> Geometry:
     return Geometry(_boundary((*held.parts, *held.holes), touch_m), bodies, placed_bodies(cage, bodies), touch_m)
 
 
+def pair_geometry(parts: Sequence[Part], others: Sequence[Part], touch_m: float) -> Geometry:
+    """Return the boundaries of parts of an object and of elements of one body of a cage, each in the frame of its body,
+    with memory for the second at a pose. Parts have the numbers of these sequences.
+    """
+    own = _boundary(tuple(others), touch_m)
+    bodies = joined([own], [np.arange(len(others))])
+    return Geometry(_boundary(tuple(parts), touch_m), bodies, empty_placing(own, 1), touch_m)
+
+
 def placed_bodies(cage: Cage, bodies: Bodies) -> Placing:
     """Return the bodies of a cage in the world, where they start, in memory of their own."""
     n_bodies = len(bodies.first_nodes) - 1
@@ -73,7 +85,7 @@ def cage_bodies(cage: Cage, touch_m: float) -> Bodies:
     return joined([_boundary(tuple(elements[k] for k in own.tolist()), touch_m) for own in numbers], numbers)
 
 
-def _boundary(parts: tuple[Shape | FloatArray, ...], touch_m: float) -> Boundary:
+def _boundary(parts: tuple[Part, ...], touch_m: float) -> Boundary:
     """Return the boundary of a body. Those of the last few bodies are remembered, as seams are."""
     keys = (
         part.tobytes() if isinstance(part, np.ndarray) else (part.form, part.name, *part.pose_body_shape.key)
@@ -88,7 +100,7 @@ class _Body:
     """The parts of a body, and all that their boundary depends on."""
 
     key: tuple[object, ...]
-    parts: tuple[Shape | FloatArray, ...] = field(compare=False)
+    parts: tuple[Part, ...] = field(compare=False)
 
 
 @lru_cache(maxsize=16)
@@ -117,11 +129,12 @@ def scene_size(held: Object, cage: Cage) -> float:
 
 def sizes_with_points(held: Object, cage: Cage, points_cage: FloatArray) -> FloatArray:
     """The sizes of scenes whose cage has other points, (n, n_points, 3), metres; (n,)."""
-    if not cage.shapes:
+    shapes = (*cage.shapes, *cage.holes)
+    if not shapes:
         sizes: FloatArray = np.maximum(object_size(held), cage_sizes(points_cage))
         return sizes
-    nodes = np.concatenate([shape.nodes_body() for shape in cage.shapes])
-    of_cage = [_body_size(np.concatenate([points, nodes]), cage.shapes) for points in points_cage]
+    nodes = np.concatenate([shape.nodes_body() for shape in shapes])
+    of_cage = [_body_size(np.concatenate([points, nodes]), shapes) for points in points_cage]
     with_shapes: FloatArray = np.maximum(object_size(held), np.array(of_cage))
     return with_shapes
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from cagepose.files.key_path import Path
 from cagepose.files.study_file import StudyFile, VariedKey, refused_at
 from cagepose.model.checks import duplicates
 from cagepose.sampling.distribution import distribution_of
@@ -25,9 +26,9 @@ def checked_columns(file: StudyFile, source: str) -> RowColumns:
     """
     columns = RowColumns(file)
     for name in duplicates(columns.names):
-        message, is_computed = f"gives the column {name} a second meaning; rename", name in file.compute
-        what = "what is computed" if is_computed else "the point that is watched"
-        raise refused_at(("compute", name) if is_computed else ("watch",), file, source, f"{message} {what}")
+        path, what = _second(name, file)
+        message = f"gives the column {name} a second meaning; rename {what}"
+        raise refused_at(path, file, source, message)
     nominal = np.array([[one.nominal for one in file.varied]])
     outcomes = Runner(file).run_nominal()
     if outcomes.errors[0] is not None:
@@ -37,6 +38,15 @@ def checked_columns(file: StudyFile, source: str) -> RowColumns:
     except NoColumnError as error:
         raise refused_at(error.path, file, source, str(error)) from None
     return columns
+
+
+def _second(name: str, file: StudyFile) -> tuple[Path, str]:
+    """Return where a column that there are two of can be renamed, and what has its name."""
+    if name in file.compute:
+        return ("compute", name), "what is computed"
+    if name in (file.model.watch or {}):
+        return ("watch", name), "what is measured"
+    return ("watch",), "the point that is watched"
 
 
 def checked_sample(file: StudyFile, source: str, varied: Sequence[VariedKey] | None = None) -> Sample:

@@ -38,6 +38,9 @@ class Outcomes:
     answers
         What is asked of each run, (n, n_columns of `cagepose.sampling.asked.AskedColumns`); NaN: no answer. None:
         nothing is asked.
+    measured
+        What is measured between features there, (n, n_columns of `cagepose.sampling.measured.MeasuredColumns`); NaN: no
+        such number. None: nothing is.
     drive_shares, greatest_along, jam_possible
         What came of the drive of each phase, (n, n_phases), as in `cagepose.runs.many.Runs`.
     errors
@@ -53,6 +56,7 @@ class Outcomes:
     touching: NDArray[np.bool_]
     forces: FloatArray | None
     answers: FloatArray | None
+    measured: FloatArray | None
     drive_shares: FloatArray
     greatest_along: FloatArray
     jam_possible: NDArray[np.bool_]
@@ -124,8 +128,8 @@ def at_rest(verdicts: NDArray[Any]) -> NDArray[np.bool_]:
     return np.isin(verdicts, sorted(AT_REST))
 
 
-def empty_outcomes(scene: Scene, n_runs: int, *, with_forces: bool, n_answers: int) -> Outcomes:
-    """Return memory for runs of scenes that are like ``scene``, and for so many answers about each."""
+def empty_outcomes(scene: Scene, n_runs: int, *, with_forces: bool, n_answers: int, n_measured: int) -> Outcomes:
+    """Return memory for runs of scenes that are like ``scene``, and for so many answers about each and measures."""
     n_phases, n_elements = len(scene.loads), len(scene.cage.element_names)
     return Outcomes(
         np.full((n_runs, n_phases), "", dtype="<U10"),
@@ -135,6 +139,7 @@ def empty_outcomes(scene: Scene, n_runs: int, *, with_forces: bool, n_answers: i
         np.zeros((n_runs, n_elements), np.bool_),
         np.full((n_runs, n_elements), np.nan) if with_forces else None,
         np.full((n_runs, n_answers), np.nan) if n_answers else None,
+        np.full((n_runs, n_measured), np.nan) if n_measured else None,
         np.full((n_runs, n_phases), np.nan),
         np.full((n_runs, n_phases), np.nan),
         np.zeros((n_runs, n_phases), np.bool_),
@@ -143,8 +148,10 @@ def empty_outcomes(scene: Scene, n_runs: int, *, with_forces: bool, n_answers: i
     )
 
 
-def outcomes_of(runs: Runs) -> Outcomes:
-    """Return what `run_many` found; rows without a valid start have "invalid" as their first verdict."""
+def outcomes_of(runs: Runs, *, n_measured: int = 0) -> Outcomes:
+    """Return what `run_many` found, with memory for measures; rows without a valid start have "invalid" as their first
+    verdict.
+    """
     n_runs = len(runs)
     rows, last = np.arange(n_runs), _last_reached(runs.phase_verdicts)
     return Outcomes(
@@ -155,6 +162,7 @@ def outcomes_of(runs: Runs) -> Outcomes:
         runs.touching[rows, last],
         None,
         None,
+        np.full((n_runs, n_measured), np.nan) if n_measured else None,
         runs.drive_shares,
         runs.greatest_along,
         runs.jam_possible,

@@ -13,12 +13,14 @@ from cagepose import __version__
 from cagepose.files.expression import Formula
 from cagepose.files.key_path import Path
 from cagepose.files.study_file import StudyFile
-from cagepose.files.units import from_metres, to_metres
+from cagepose.files.units import from_metres
+from cagepose.files.watched import watched_points
 from cagepose.model.checks import FloatArray
 from cagepose.model.wording import few
 from cagepose.runs.load_scaling import force_unit
 from cagepose.runs.run import FAILURES
 from cagepose.sampling.asked import AskedColumns
+from cagepose.sampling.measured import MeasuredColumns
 from cagepose.sampling.outcome import REFUSED, Outcomes, at_rest
 
 SAME_LENGTH_OF_SIZE = 1e-8
@@ -54,10 +56,10 @@ class RowColumns:
     Attributes
     ----------
     varied, quantities
-        Names of the varied numbers, and of what is measured of each run: the final pose, the watched points, how far
-        each drive got with which force, what is asked, and what is computed of these.
+        Names of the varied numbers, and of what is measured of each run: the final pose, what is watched, how far each
+        drive got with which force, what is asked, and what is computed of these.
     watched
-        Those of the quantities that belong to watched points.
+        Those of the quantities that are watched: the coordinates of points, and gaps, angles and distances.
     resolution
         By quantity: what varies by less does not vary, but for rounding and the touch tolerance.
     units
@@ -72,22 +74,22 @@ class RowColumns:
 
     def __init__(self, study: StudyFile) -> None:
         self._study, scene = study, study.nominal.scene
-        self._watched = {
-            name: to_metres(watch.point, study.nominal.length_unit) for name, watch in (study.model.watch or {}).items()
-        }
+        watched, unit = study.model.watch or {}, study.nominal.length_unit
+        self._points, self._measures = watched_points(watched, unit), MeasuredColumns(watched, unit).names
+        angles = {*ANGLES, *(name for name in self._measures if watched[name].kind == "angle")}
         elements = scene.cage.element_names
         self.varied = tuple(one.key for one in study.varied)
-        self.watched = tuple(f"{name}_{axis}" for name in self._watched for axis in AXES)
-        lengths = float(from_metres(SAME_LENGTH_OF_SIZE * scene.size_m, study.nominal.length_unit))
+        self.watched = (*(f"{name}_{axis}" for name in self._points for axis in AXES), *self._measures)
+        lengths = float(from_metres(SAME_LENGTH_OF_SIZE * scene.size_m, unit))
         self.driven = {load.name: place for place, load in enumerate(scene.loads) if load.drive}
         pose = (*(f"position_{axis}" for axis in AXES), *ANGLES, *self.watched)
         drives = {f"{kind}_{phase}": same for phase in self.driven for kind, same in SAME_DRIVE.items()}
-        asked = AskedColumns(study.model.ask or (), scene, study.nominal.length_unit).columns
+        asked = AskedColumns(study.model.ask or (), scene, unit).columns
         self.quantities = (*pose, *drives, *(column.name for column in asked), *study.compute)
-        self.resolution = {name: SAME_DEG if name in ANGLES else lengths for name in pose} | drives
+        self.resolution = {name: SAME_DEG if name in angles else lengths for name in pose} | drives
         self.resolution |= {column.name: column.same for column in asked}
         self.resolution |= dict.fromkeys(study.compute, SAME_COMPUTED)
-        of_quantities = {name: "deg" if name in ANGLES else study.nominal.length_unit for name in pose}
+        of_quantities = {name: "deg" if name in angles else unit for name in pose}
         of_quantities |= {f"drive_{phase}": "" for phase in self.driven}
         of_quantities |= {f"force_max_{phase}": self._unit_along(phase) for phase in self.driven}
         of_quantities |= {column.name: column.unit for column in asked}
@@ -116,9 +118,11 @@ class RowColumns:
     def _measured(self, outcomes: Outcomes) -> dict[str, FloatArray]:
         """Return the same of all runs that ended at a pose, wherever they were on their way."""
         unit = self._study.nominal.length_unit
-        watched = [outcomes.points_world_m(point) for point in self._watched.values()]
+        watched = [outcomes.points_world_m(point) for point in self._points.values()]
         position, *points = (from_metres(places, unit).T for places in (outcomes.position_m, *watched))
         found = np.concatenate([position, np.degrees(outcomes.euler_zyx).T, *points])
+        if outcomes.measured is not None:
+            found = np.concatenate([found, outcomes.measured.T])
         drives = list[FloatArray]()
         for phase, place in self.driven.items():
             greatest = outcomes.greatest_along[:, place]

@@ -24,6 +24,7 @@ from cagepose.runs.scene_rows import SceneRows
 from cagepose.runs.solve import run
 from cagepose.sampling.asked import AskedColumns
 from cagepose.sampling.batch_columns import BatchColumns, Columns
+from cagepose.sampling.measured import MeasuredColumns
 from cagepose.sampling.outcome import Outcomes, empty_outcomes, outcomes_of
 
 ROWS_OF_A_BATCH = 16_384
@@ -56,7 +57,8 @@ class Runner:
     Attributes
     ----------
     is_batch
-        Whether the batch kernel can vary all numbers, and nothing is asked of each run.
+        Whether the batch kernel can vary all numbers, nothing is asked of each run, and nothing is measured from bodies
+        of the cage, which move.
     rows_of_a_part
         How many rows are run at once.
 
@@ -80,7 +82,9 @@ class Runner:
         self._batch = BatchColumns(self._nominal, study.nominal.length_unit)
         probe = self._columns(np.array([[one.nominal for one in study.varied]]))
         self._asked = AskedColumns(study.model.ask or (), study.nominal.scene, study.nominal.length_unit)
-        self.is_batch = not len(self._asked) and all(map(self._batch.takes, probe))
+        self._measured = MeasuredColumns(study.model.watch or {}, study.nominal.length_unit)
+        measures_batch = self._measured.takes(study.nominal.scene)
+        self.is_batch = not len(self._asked) and measures_batch and all(map(self._batch.takes, probe))
         self.rows_of_a_part = ROWS_OF_A_BATCH if self.is_batch else ROWS_ONE_BY_ONE
         self._pool: ProcessPoolExecutor | None = None
 
@@ -125,16 +129,20 @@ class Runner:
         return self._run_one_by_one(values, bool(self.study.model.forces))
 
     def _run_one_by_one(self, values: FloatArray, has_forces: bool, told: Told | None = None) -> Outcomes:
-        """Build and run the scene of each row; with forces or questions, read all of each run."""
-        reads_all, n_answers = has_forces or len(self._asked) > 0, len(self._asked)
+        """Build and run the scene of each row; with forces, questions or measures, read all of each run."""
+        n_answers, n_measured = len(self._asked), len(self._measured)
+        reads_all = has_forces or n_answers > 0 or n_measured > 0
         nominal, refused = self.study.nominal.scene, dict[int, str]()
-        outcomes = empty_outcomes(nominal, len(values), with_forces=has_forces, n_answers=n_answers)
+        outcomes = empty_outcomes(
+            nominal, len(values), with_forces=has_forces, n_answers=n_answers, n_measured=n_measured
+        )
         rows = SceneRows(nominal, len(values))
         for row in range(len(values)):
             try:
                 if reads_all:
                     ended = run(self._scene(values[row]))
                     outcomes.write_run(row, ended)
+                    self._measured.write_run(outcomes, row, ended)
                     if outcomes.answers is not None and not ended.failed:
                         outcomes.answers[row] = self._asked.answers(ended)
                 else:
@@ -155,7 +163,9 @@ class Runner:
     def _write_one_by_one(self, values: FloatArray, rows: Iterable[int], outcomes: Outcomes) -> None:
         for row in rows:
             try:
-                outcomes.write_run(row, run(self._scene(values[row])))
+                ended = run(self._scene(values[row]))
+                outcomes.write_run(row, ended)
+                self._measured.write_run(outcomes, row, ended)
             except SceneError as error:
                 outcomes.write_refusal(row, str(error))
 
@@ -172,8 +182,10 @@ class Runner:
         if not usable.all():  # the nominal scene in their place, until they are written below
             columns = {path: np.where(usable, column, self._nominal_at(path)) for path, column in columns.items()}
         scene, variation = self.study.nominal.scene, self._batch.variation(columns)
-        outcomes = outcomes_of(run_many(scene, variation, threads=self._workers))
+        runs = run_many(scene, variation, threads=self._workers)
+        outcomes = outcomes_of(runs, n_measured=len(self._measured))
         is_told = usable & (outcomes.phase_verdicts[:, 0] != "invalid")
+        self._measured.write_rows(outcomes, np.flatnonzero(is_told).tolist(), scene, variation)
         if has_forces:
             outcomes.forces = end_forces(scene, variation, np.flatnonzero(is_told).tolist())
         if not is_told.all():

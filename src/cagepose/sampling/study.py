@@ -34,7 +34,10 @@ class Study:
         By key of the scene, how the number varies: ``{"parameters.play": {"uniform": [0.2, 1.0]}}``.
     sample
         ``{"method": "sobol", "runs": 10_000, "seed": 1}``.
-    watch, ask, compute, accept, forces, sensitivities, map
+    watch
+        By the name of its columns, a point of the object, or a gap, an angle or a distance between the cage and the
+        object: ``{"lean": {"angle": ["bore", "pin"]}}``.
+    ask, compute, accept, forces, sensitivities, map
         As in a study file.
 
     Raises

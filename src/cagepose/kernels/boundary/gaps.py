@@ -14,7 +14,7 @@ import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, scaled, vector_from
-from cagepose.kernels.boundary.circle import is_on_arc
+from cagepose.kernels.boundary.circle import circle_of, is_on_arc
 from cagepose.kernels.boundary.circle_meeting import common_at, is_core
 from cagepose.kernels.boundary.extents import extent_of, surely_apart
 from cagepose.kernels.boundary.features import (
@@ -22,6 +22,7 @@ from cagepose.kernels.boundary.features import (
     FACE,
     LINE,
     VERTEX,
+    Feature,
     PlacedBoundary,
     box_of,
     in_body,
@@ -31,15 +32,15 @@ from cagepose.kernels.boundary.features import (
     position_of,
 )
 from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_at, held_at
-from cagepose.kernels.boundary.meeting import between_cores, both_reach, meeting
+from cagepose.kernels.boundary.meeting import between_cores, both_reach, meeting, seated
 from cagepose.kernels.boundary.meetings import find_circle_places, slack_of
-from cagepose.kernels.boundary.met import Meeting, swapped
+from cagepose.kernels.boundary.met import CENTRED, Meeting, swapped
 from cagepose.kernels.boundary.surfaces import crossing, has_surface
 from cagepose.kernels.boundary.tapered import nearest_on_axis
 from cagepose.kernels.boundary.touching import MOST_PAIRS, MOST_PLACES
 from cagepose.kernels.boundary.tree import EDGES, FACES, SAFE, VERTICES, Node, boxes_apart
 from cagepose.kernels.boundary.within import root_has_surfaces
-from cagepose.kernels.circles.places import SADDLE, WHOLE, Place, write_place
+from cagepose.kernels.circles.places import SADDLE, WHOLE, Place, angle_toward, on_circle, write_place
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
 
@@ -198,8 +199,8 @@ def add_gaps(
     if n_places == WHOLE:
         for k in range(PLACES_OF_WHOLE):
             angle = circle.start + circle.width * k / PLACES_OF_WHOLE
-            write_place(work.places[k], angle, 0.0, 0, True)
-        n_places = 0 if one.kind == other.kind else PLACES_OF_WHOLE
+            write_place(work.places[k], angle, angle_beside(circle, angle, other), 0, True)
+        n_places = PLACES_OF_WHOLE
     for k in range(n_places):
         place = work.places[k]
         if place.kind != SADDLE and is_on_arc(circle, place.angle, SLACK_OF_TOUCH * geometry.touch_m):
@@ -208,9 +209,30 @@ def add_gaps(
 
 
 @kernel
+def angle_beside(circle: Feature, angle: float, other: Feature) -> float:
+    """Return the angle of the place of another circle that is nearest to a place of one; of another feature, zero."""
+    if other.kind != CIRCLE:
+        return 0.0
+    return angle_toward(circle_of(other), on_circle(circle_of(circle), angle).point)
+
+
+@kernel
+def is_centred(vertex: Feature, wall: Feature) -> bool:
+    """Whether a vertex is on the axis of a straight wall around it, and so has no one nearest place of it."""
+    if vertex.kind != VERTEX or wall.kind != LINE or wall.radius >= 0.0 or wall.taper != 0.0:
+        return False
+    center = vector_from(vertex.point)
+    return norm(minus(nearest_on_axis(wall, center).place, center)) <= CENTRED * max(vertex.radius, -wall.radius)
+
+
+@kernel
 def straight_gap(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int) -> Meeting:
     """Return where two features, none of which is a circle, are nearest to each other."""
     one, other = held.features[i], cage.features[j]
+    if is_centred(one, other):
+        return seated(one, other, 0.0)
+    if is_centred(other, one):
+        return swapped(seated(other, one, 0.0))
     if one.kind == FACE or other.kind == FACE or one.radius + other.radius != 0.0:
         return meeting(held, i, cage, j)
     if one.kind == LINE and other.kind == LINE:

@@ -115,8 +115,8 @@ def is_seated(ball: Feature, wall: Feature) -> bool:
 
 @kernel
 def seated(ball: Feature, wall: Feature, angle: float) -> Meeting:
-    """Return how a ball of the object and a hole's slanted wall meet at an angle around the wall's axis: the gap to the
-    plane that touches the wall there. A ball on the axis is as far from the wall itself, all around.
+    """Return how a ball of the object and a hole's wall meet at an angle around the wall's axis: the gap to the plane
+    that touches the wall there. A ball on the axis is as far from the wall itself, all around.
     """
     axis, toward, center = vector_from(wall.direction), vector_from(wall.toward), vector_from(ball.point)
     out = plus(scaled(toward, math.cos(angle)), scaled(cross(axis, toward), math.sin(angle)))
