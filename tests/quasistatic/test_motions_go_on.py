@@ -75,6 +75,15 @@ def test_a_drawer_slides_past_where_it_could_stay_to_where_it_must(friction, bes
     assert sum(contact.force_normal_n for contact in result.phases[1].contacts) < 50.0 * PULL_N
 
 
+@pytest.mark.parametrize(("friction", "beside_mm"), [(0.5, 100.0), (0.7, 60.0), (0.4, 140.0), (0.5, 180.0)])
+def test_with_hardly_any_play_it_slides_to_the_closed_form(friction, beside_mm):
+    """L = 2 mu e, but for the play, and for the 1e-5 sizes by which a motion that could have ended runs on. The end of
+    a wall begins at the lower edge of the drawer's side, and still comes off it at its rear.
+    """
+    result = run(drawer(friction, beside_mm, 1e-3))
+    assert result.pose.position_m[0] / MM == pytest.approx(LENGTH - 2.0 * friction * beside_mm, abs=0.03)
+
+
 def test_a_drawer_that_rests_where_it_could_slide_stays():
     """Begun from rest at L = 130 mm, between 2 mu e = 100 mm and mu w = 150 mm: a phase begins from rest."""
     result = run(drawer(0.5, 100.0, PLAY_MM, begun_mm=270.0))
