@@ -27,6 +27,7 @@ from audit.geometry import (
     touches,
     touches_are_clear,
 )
+from audit.goes_on import COULD_STAY
 from cagepose import Contact, PhaseRun, Pose, Run, Scene
 
 AT_REST = ("rests", "may rest")
@@ -68,12 +69,18 @@ def balance(run: Run) -> Answer:
 
 
 def unbalance(run: Run) -> Answer:
-    """Where the run says that the part moves, no forces of the contacts that are surely closed balance the load."""
+    """Where the run says that the part moves, no forces of the contacts that are surely closed balance the load. Events
+    say where friction could hold it all the same: `goes_on` asks about them.
+    """
     found, asked = [], False
     for phase in run.phases:
         acts = acting(run.scene, load_of(run.scene, phase.name))
         starts = [phase.start_pose, *(event.pose_world_object for event in phase.events)]
-        moving = [start for start, event in zip(starts, phase.events, strict=False) if event.motion is not None]
+        moving = [
+            start
+            for start, event in zip(starts, phase.events, strict=False)
+            if event.motion is not None and event.note != COULD_STAY
+        ]
         if phase.proof.verdict == "moves":
             moving.append(phase.pose)
         for pose in moving[-MOST_STARTS:]:

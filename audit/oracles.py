@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from audit import balance, certified, groups, inside, order, robustness, stability, uniqueness, way
+from audit import balance, certified, goes_on, groups, inside, order, robustness, stability, uniqueness, way
 from audit.case import Answer, Case, Failure
 from audit.families import make_case
 from cagepose import Run, run
@@ -14,6 +14,7 @@ from cagepose import Run, run
 ORACLES: dict[str, Callable[[Run], Answer]] = {
     "balance": balance.balance,
     "moves": balance.unbalance,
+    "onward": goes_on.goes_on,
     "forces": balance.forces,
     "contacts": balance.contacts,
     "groups": groups.groups,

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from audit import balance, certified, groups, inside, order, robustness, stability, uniqueness, way
+from audit import balance, certified, goes_on, groups, inside, order, robustness, stability, uniqueness, way
 from audit.case import Case
 from audit.families import FAMILIES, make_case
 from audit.geometry import acting
@@ -93,6 +93,41 @@ def test_a_motion_from_a_balanced_pose_is_found():
     away = replace(last, rule="slide", motion=held.motion, pose_world_object=Pose((0.01, 0, 0.01)))
     assert balance.unbalance(one) in ([], None)
     (text,) = balance.unbalance(with_phase(one, events=(*one.phases[-1].events[:-1], away)))
+    assert "balance the load" in text
+
+
+def block_that_goes_on():
+    """A run, and the places of the phase and of the event in it where friction could hold the block."""
+    one = run(make_case("block", 30).scene.changed(friction_coefficient=0.1))
+    return one, *next(
+        (phase, event)
+        for phase in range(len(one.phases))
+        for event in range(len(one.phases[phase].events))
+        if one.phases[phase].events[event].note == goes_on.COULD_STAY
+    )
+
+
+def with_event(one, phase, event, **changes):
+    old = one.phases[phase]
+    events = (*old.events[:event], replace(old.events[event], **changes), *old.events[event + 1 :])
+    return replace(one, phases=(*one.phases[:phase], replace(old, events=events), *one.phases[phase + 1 :]))
+
+
+def test_a_motion_that_goes_on_against_coulombs_law_is_found():
+    one, phase, event = block_that_goes_on()
+    assert goes_on.goes_on(one) == []
+    path = one.phases[phase].events[event].path
+    ways = [np.array((0.0, 0.0, k * 1e-4)) for k in range(len(path))]
+    aside = [Pose(pose.position_m + way, pose.quaternion_wxyz) for pose, way in zip(path, ways, strict=True)]
+    for wrong in (path[::-1], tuple(aside)):
+        (text,) = goes_on.goes_on(with_event(one, phase, event, path=wrong))
+        assert "Coulomb's law leaves" in text
+
+
+def test_a_motion_from_a_balance_that_does_not_say_so_is_found():
+    one, phase, event = block_that_goes_on()
+    assert balance.unbalance(one) == []
+    (text,) = balance.unbalance(with_event(one, phase, event, note=None))
     assert "balance the load" in text
 
 

@@ -306,26 +306,37 @@ def held_by(columns: np.ndarray, friction: float, random: np.random.Generator) -
 
 
 def held_blocks(random: np.random.Generator, friction: float) -> Iterator[Held]:
-    """Where blocks come to rest by friction."""
+    """Where friction can hold blocks: where they come to rest, and on the way where they go on because they move."""
     while True:
         scene = pushed_block(random, friction)
         phase = run(scene).phases[0]
-        if phase.proof.verdict == "moves" or not phase.proof.needs_friction:
-            continue
+        poses = [pose for event in phase.events if event.note == "could stay" for pose in event.path[:-1]]
+        if phase.proof.verdict != "moves" and phase.proof.needs_friction:
+            poses.append(phase.pose)
         part, at = part_of(scene), empty_proof_workspace(scene.geometry)
-        case = start_of(0, part, cases_of(scene, friction, phase.pose), empty_cage(scene.geometry))
-        stand_at(
-            case.geometry,
-            part.body,
-            case.position,
-            case.quaternion,
-            case.actions[0],
-            case.friction,
-            at,
-        )
-        rows = [at.contacts.rows[i] for i in range(at.contacts.used[0]) if at.contacts.states[i].chosen]
-        load = at.scratch[0].solver.load
-        yield Held(np.array([row.columns[:, :6] for row in rows]), friction, load / np.linalg.norm(load))
+        for pose in poses:
+            case = start_of(0, part, cases_of(scene, friction, pose), empty_cage(scene.geometry))
+            stand_at(
+                case.geometry,
+                part.body,
+                case.position,
+                case.quaternion,
+                case.actions[0],
+                case.friction,
+                at,
+            )
+            rows = [at.contacts.rows[i] for i in range(at.contacts.used[0]) if at.contacts.states[i].chosen]
+            columns, load = np.array([row.columns[:, :6] for row in rows]), at.scratch[0].solver.load
+            held = Held(columns, friction, load / np.linalg.norm(load))
+            if pose is phase.pose or can_hold(held):
+                yield held
+
+
+def can_hold(held: Held) -> bool:
+    """Whether forces within pyramids of 64 sides, inside the cones, balance the load."""
+    angles = 2 * np.pi * np.arange(64) / 64
+    sides = np.column_stack([np.ones(64), held.friction * np.cos(angles), held.friction * np.sin(angles)])
+    return bool(nnls(np.einsum("ka,iab->bik", sides, held.columns).reshape(6, -1), held.load[:6])[1] < 1e-12)
 
 
 def onset_from_anywhere(held: Held, random: np.random.Generator) -> bool:
@@ -422,4 +433,4 @@ def test_whether_an_ordinary_block_can_begin_to_move_is_nearly_always_said(cases
     say(f"blocks, friction {friction}: " + ", ".join(f"{verdicts.count(v)} {v}" for v in ("rests", "may rest")))
     assert sum("was not shown" in proof.reason for proof in proofs) <= n // 100
     assert verdicts.count("rests") > n // 2
-    assert verdicts.count("may rest") > 0
+    assert verdicts.count("may rest") <= n // 10  # a quarter, if motions ended where they could

@@ -73,14 +73,20 @@ def test_two_ends_that_rub_differently_jam_as_their_moments_say() -> None:
 
 @pytest.mark.parametrize("play", [2e-5, 2e-6])
 def test_a_round_pin_in_its_hole_comes_to_that_as_the_play_vanishes(play: float) -> None:
-    """Leaning by play over length, its arms are longer by about D / 2 times that."""
+    """Leaning by play over length, its arms are longer by about D / 2 times that. A stop ends its way while it is all
+    through the hole: it is guided over less and less as its end goes in, and jams there.
+    """
     radius, length, offset = 0.005, 0.02, 0.04
     pin = Object(shapes=[Cylinder(radius, 6 * length)], pose=Pose((0, 0, 0)))
     plate = [Box((0.06, 0.06, length), Pose((0, 0, 0)), "plate")]
+    stop = Box((0.06, 0.06, 0.01), Pose((0, 0, -4 * length - 0.005)), "stop")
     hole = Hole(radius + 0.5 * play, length, None, ["plate"], Pose((0, 0, 0.5 * length)), "hole")
     push = Load("push", force=Force((0, 0, -1), (offset, 0, 0)))
-    found = asked(run(Scene(pin, Cage(shapes=plate, holes=[hole]), [push], friction_coefficient=0.2)))
+    found = asked(run(Scene(pin, Cage(shapes=[*plate, stop], holes=[hole]), [push], friction_coefficient=0.2)))
     assert found.friction == pytest.approx(length / (2 * offset), rel=5 * play / length)
+    through = run(Scene(pin, Cage(shapes=plate, holes=[hole]), [push], friction_coefficient=0.2))
+    left = 3 * length + through.pose.position_m[2] + 0.5 * length
+    assert left == pytest.approx(0.2 * 2 * offset, abs=10.0 * play)
 
 
 def test_a_guide_that_is_driven_jams_alike_while_it_still_slides() -> None:

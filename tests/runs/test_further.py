@@ -57,7 +57,7 @@ def test_no_pull_gets_the_part_into_its_cage_and_each_goes_on_from_the_one_befor
     compared = measure(found, last)
     assert compared is not None
     draw, way, rests = np.random.default_rng(7), list[Place](), 0
-    for _ in range(8):
+    for _ in range(12):
         force = compared.greatest * draw.uniform(0.1, 3.0) * unit(draw.normal(size=3))
         led = pulled(found, way, force, held.center_of_gravity_m + 0.3 * held.reach_m * draw.uniform(-1.0, 1.0, 3))
         if led.verdict in GOES_ON:

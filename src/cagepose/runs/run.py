@@ -23,7 +23,7 @@ from cagepose.runs.on_the_way import first_row, is_driven_on, row_on_curve, shar
 from cagepose.runs.proof import Proof
 
 MotionKind = Literal["travel", "turn", "screw"]
-Note = Literal["tie", "balanced", "small turn", "edge tie", "edge"]
+Note = Literal["tie", "balanced", "small turn", "edge tie", "edge", "could stay"]
 Verdict = Literal[
     "stable",
     "rests",
@@ -173,7 +173,8 @@ class Event:
         was decided by convention), "balanced" (the load's line passes through the one contact that holds), "small
         turn" (held, though the load could still turn the object by less than counts), "edge tie" (a contact on an edge
         whose faces make the same angle with the push), "edge" (it begins to move only because a contact lies exactly on
-        an edge: with another face of that the contacts would hold it); None: nothing.
+        an edge: with another face of that the contacts would hold it), "could stay" (friction could hold it where it
+        begins, or on the way, and it goes on because it moves); None: nothing.
     share
         How much of the phase's drive, or of the ways of what presses, is done after it, from 0 to 1.
     path

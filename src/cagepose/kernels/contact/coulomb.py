@@ -30,6 +30,7 @@ from cagepose.kernels.contact.tolerances import (
     LONGEST_MOTION,
     SLIP_TRIED_LAST,
     SLIP_TRIED_STICKING,
+    SLOWEST_ALONG,
     VIOLATION_IN_LOADS,
     VIOLATION_OF_COULOMB,
 )
@@ -40,6 +41,11 @@ FIRST_SWEEPS = 3
 """Newton's method is tried after each of the first sweeps, which mostly show the modes."""
 SWEEPS_BETWEEN = 6
 """After them it is tried each time that so many sweeps have passed."""
+ROUNDS_ALONG = 3
+"""How often the iteration is begun from a motion: from the one before, then from those that Newton's method finds."""
+SHARES_TRIED = (1.0, 0.03, 0.001)
+"""Of the speed of the motion before. One that comes to its end is much slower, and where it is thought to be fast,
+contacts that carry seem to open."""
 TIMES_TURNED = 6
 """How often the sides of pyramids are turned to the slip."""
 
@@ -151,6 +157,64 @@ def read_modes(contacts: ContactSet, slow_speed: float, y: FloatArray, newton: N
 
 
 @kernel
+def correct(
+    contacts: ContactSet, friction: float, b: FloatArray, terms: float, y: FloatArray, cone: ConeWorkspace
+) -> None:
+    """Solve the problem with De Saxce's correction for the slip speeds of a motion, equation (5.8)."""
+    for i in range(contacts.used[0]):
+        contacts.states[i].slip_speed = steepest_tangent(contacts, i, y)[0] if contacts.states[i].counts else 0.0
+    clear_cone(cone, b, contacts.n_freedoms, terms)
+    cone.is_corrected = True
+    cone_residual(contacts, friction, cone)
+
+
+@kernel
+def coulomb_motion_along(
+    contacts: ContactSet,
+    friction: float,
+    b: FloatArray,
+    terms: float,
+    before: FloatArray,
+    cone: ConeWorkspace,
+    y: FloatArray,
+    newton: NewtonWorkspace,
+) -> bool:
+    """Find forces and a motion that obey Coulomb's law near a motion, where rest may obey it as well (5.62); False:
+    none was found, or none but rest.
+
+    Parameters
+    ----------
+    contacts, friction, b, terms
+        As in `coulomb_onset`; the length of the terms of the load.
+    before
+        The scaled motion before, at any speed.
+    cone, newton
+        Memory.
+    y
+        Filled: the one that was found, which must not be the memory of the one before.
+    """
+    n = contacts.n_freedoms
+    for share in SHARES_TRIED:
+        for k in range(n):
+            y[k] = share * before[k]
+        for _ in range(ROUNDS_ALONG):
+            correct(contacts, friction, b, terms, y, cone)
+            read_cone(contacts, friction, b, cone, y)
+            if obeys(contacts, friction, terms, y):
+                if length(y, n) > SLOWEST_ALONG * terms:
+                    return True
+                break  # at rest
+            read_modes(contacts, SLIP_TRIED_STICKING * length(y, n), y, newton)
+            solved = solves_with_modes(contacts, friction, b, terms, y, newton)
+            is_motion = SLOWEST_ALONG * terms < length(y, n) <= LONGEST_MOTION * terms
+            if solved and is_motion:
+                return True
+            if not is_motion:
+                read_cone(contacts, friction, b, cone, y)
+    return False
+
+
+@kernel
 def coulomb_onset(
     contacts: ContactSet,
     friction: float,
@@ -173,9 +237,7 @@ def coulomb_onset(
     newton, pivots
         Memory.
     """
-    terms, states = cone.passive.terms, contacts.states
-    for i in range(contacts.used[0]):
-        states[i].slip_speed = 0.0
+    terms = cone.passive.terms
     for turn in range(1, SWEEPS + 1):
         read_cone(contacts, friction, b, cone, y)
         if obeys(contacts, friction, terms, y):
@@ -186,11 +248,7 @@ def coulomb_onset(
             if solves_with_modes(contacts, friction, b, terms, y, newton):
                 return True
             read_cone(contacts, friction, b, cone, y)
-        for i in range(contacts.used[0]):
-            states[i].slip_speed = steepest_tangent(contacts, i, y)[0] if states[i].counts else 0.0
-        clear_cone(cone, b, contacts.n_freedoms, terms)
-        cone.is_corrected = True
-        cone_residual(contacts, friction, cone)
+        correct(contacts, friction, b, terms, y, cone)
     if solves_by_pivoting(contacts, friction, b, terms, y, newton, pivots):
         return True
     read_cone(contacts, friction, b, cone, y)

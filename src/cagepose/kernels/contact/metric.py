@@ -157,6 +157,15 @@ def twist_of(y: FloatArray, frame: Frame) -> tuple[Vector, Vector]:
 
 
 @kernel
+def write_scaled_twist(velocity: Vector, spin: Vector, frame: Frame, out: FloatArray) -> None:
+    """Write the scaled twist of a motion into six numbers, without what is held: y = D^1/2 nu."""
+    turning = times(frame.axes, spin)
+    for k in range(3):
+        out[k] = frame.travels[k] * velocity[k]
+        out[3 + k] = frame.radii[k] * turning[k] if frame.radii[k] < math.inf else 0.0
+
+
+@kernel
 def moved_along_twist(
     position: Vector, quaternion: Quaternion, velocity: Vector, spin: Vector, amount: float
 ) -> tuple[Vector, Quaternion]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from cagepose.kernels.algebra.least_squares import inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.contact_set import ContactSet, choose, is_smooth
-from cagepose.kernels.contact.coulomb import allowed_error, coulomb_onset
+from cagepose.kernels.contact.coulomb import allowed_error, coulomb_motion_along, coulomb_onset
 from cagepose.kernels.contact.edges import (
     CHOICES_LIMIT,
     EVERY,
@@ -33,7 +33,7 @@ from cagepose.kernels.contact.metric import Frame, twist_of
 from cagepose.kernels.contact.on_circle import MOST_ADDED_POINTS, add_on_circles, drop_idle, keeps_on_circle
 from cagepose.kernels.contact.self_stress import begin_unlocked, carry_by_locked, forget_locked
 from cagepose.kernels.contact.tip import tips_on_circle
-from cagepose.kernels.contact.tolerances import FASTER_MOTION
+from cagepose.kernels.contact.tolerances import FASTER_MOTION, LEAST_ALONG
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.native.kernel import kernel
 
@@ -101,6 +101,68 @@ def onset(contacts: ContactSet, frame: Frame, friction: float, work: ContactWork
             carry_by_locked(contacts, friction, work)
     drop_idle(contacts, work.cone)
     return code
+
+
+@kernel
+def cosine(y: FloatArray, other: FloatArray, n: int) -> float:
+    """Return that of the angle between two scaled motions, both of which are some."""
+    return inner(y, other, n) / (length(y, n) * length(other, n))
+
+
+@kernel
+def motion_along(
+    contacts: ContactSet, frame: Frame, friction: float, before: FloatArray, y: FloatArray, work: ContactWorkspace
+) -> bool:
+    """Find the motion of the listed contacts that goes on as the one before; see `goes_on`."""
+    n, found, most, one_choice = contacts.n_freedoms, False, LEAST_ALONG, has_one_choice(contacts)
+    terms, trial = work.load_terms, work.trial
+    if not one_choice:
+        begin_unlocked(contacts, work)
+        first_choice(contacts)
+        equilibrium_of_choice(contacts, frame, friction, AT_REST, work)
+    for _ in range(CHOICES_LIMIT):
+        if coulomb_motion_along(contacts, friction, work.load, terms, before, work.cone, trial, work.newton):
+            along = cosine(trial, before, n)
+            if along > most:
+                found, most = True, along
+                for k in range(n):
+                    y[k] = trial[k]
+                keep_choice(contacts)
+        if one_choice or not next_choice_unlocked(contacts, ONLY_CARRYING, work):
+            break
+        equilibrium_of_choice(contacts, frame, friction, AT_REST, work)
+    if found and not one_choice:
+        return_to_choice(contacts, frame, friction, AT_REST, work)
+        if work.has_locked:
+            coulomb_motion_along(contacts, friction, work.load, terms, y, work.cone, trial, work.newton)
+    return found
+
+
+@kernel
+def goes_on(
+    contacts: ContactSet, frame: Frame, friction: float, before: FloatArray, y: FloatArray, work: ContactWorkspace
+) -> bool:
+    """Whether an object that friction could hold, as `equilibrium` says of it, and that moves, goes on: the motion y
+    that obeys Coulomb's law as well, nearest to the one before (5.62). With edges it goes on if it does with any choice
+    of faces; then the one counts with which it turns least.
+
+    Filled: as by `onset`, but for y. If it does not go on, only the contacts are as they were: neither their forces nor
+    which faces are chosen.
+    """
+    n_before, found = contacts.used[0], length(before, contacts.n_freedoms) > 0.0
+    for _ in range(MOST_ADDED_POINTS):
+        found = found and motion_along(contacts, frame, friction, before, y, work)
+        if not found or not add_on_circles(contacts, frame, 0.0, y, work.load_terms):
+            break
+        forget_locked(contacts, work)
+        equilibrium(contacts, frame, friction, AT_REST, work)
+    if not found:
+        contacts.used[0] = n_before
+        return False
+    if work.locked.used > 0:
+        carry_by_locked(contacts, friction, work)
+    drop_idle(contacts, work.cone)
+    return True
 
 
 @kernel

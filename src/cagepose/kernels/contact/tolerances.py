@@ -39,6 +39,10 @@ SLIP_TRIED_STICKING = 1e-6
 """In lengths of the motion. A contact that slips more slowly is first tried as one that sticks."""
 SLIP_TRIED_LAST = 1e-10
 """In lengths of the motion. The same for the second trial."""
+LEAST_ALONG = 0.5
+"""Cosine of a motion and the one before. One that turns by more is farther from it than rest, at the same speed."""
+SLOWEST_ALONG = 1e-9
+"""In lengths of the load. A motion that goes on, and is no faster, has come to rest."""
 LAST_CHANGE = 1e-14
 """In lengths of the load. After so small a change the next one is rounding, since the digits double."""
 LENGTH_OF_NO_SPRING = 1e-6

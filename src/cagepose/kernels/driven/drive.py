@@ -36,7 +36,8 @@ from cagepose.kernels.driven.trial import write_way
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import LIMIT, RESTS, STALLED, STOPS
-from cagepose.kernels.quasistatic.step import State, note_touching, stand_at, write_state
+from cagepose.kernels.quasistatic.state import State, at_rest, write_state
+from cagepose.kernels.quasistatic.step import note_touching, stand_at
 
 LONGEST = 1.0 / 64.0
 """In shares: a step of a drive."""
@@ -174,7 +175,7 @@ def open_contacts(
     if step >= step_limit:
         return LIMIT, step, state, share
     opened, end, turned = opened_pose(drive, state.position, state.quaternion, work)
-    after = State(end, turned, state.turn_step_rad, 0, 0)
+    after = at_rest(end, turned, state.turn_step_rad, 0)
     if not opened or state.n_still + 1 >= STILL_LIMIT:
         return STALLED, step, state, share
     write_state(work.run.trace.rows[step], state)
@@ -209,8 +210,8 @@ def drive_on(
         scratch.way[k] = scratch.end_way[k] = 0.0
     while step < step_limit:
         if share >= 1.0:
-            return RESTS, step, State(position, quaternion, state.turn_step_rad, 0, 0), share
-        here = State(position, quaternion, state.turn_step_rad, n_still, 0)
+            return RESTS, step, at_rest(position, quaternion, state.turn_step_rad, 0), share
+        here = at_rest(position, quaternion, state.turn_step_rad, n_still)
         ends = next_leg(work.memory, share)
         note_touching(run)
 
@@ -268,7 +269,7 @@ def drive_on(
             share, step, position, quaternion = reached, step + 1, end, turned
             driving = run.trace.rows[step - 1].driving
             if left_to_limit(drive.stop_at, driving, share, work.drivers, work.memory) <= AT_LIMIT:
-                return STOPS, step, State(position, quaternion, state.turn_step_rad, 0, 0), share
+                return STOPS, step, at_rest(position, quaternion, state.turn_step_rad, 0), share
             continue
 
         # The rest is lost, or there is no way on.
@@ -287,4 +288,4 @@ def drive_on(
         if n_still > STILL_LIMIT:
             break
     verdict = LIMIT if step >= step_limit else STALLED
-    return verdict, step, State(position, quaternion, state.turn_step_rad, 0, 0), share
+    return verdict, step, at_rest(position, quaternion, state.turn_step_rad, 0), share

@@ -16,7 +16,8 @@ from cagepose.kernels.driven.rate import APART
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import NONE, PLAIN, RESTS, SCREW
-from cagepose.kernels.quasistatic.step import DRIVEN, State, write_step
+from cagepose.kernels.quasistatic.state import State
+from cagepose.kernels.quasistatic.step import DRIVEN, write_step
 
 JUMP = 1e-6
 """Of the drivers' force and the load: a greater change at one place is told. The force is that a little ahead."""

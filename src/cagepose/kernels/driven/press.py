@@ -27,7 +27,8 @@ from cagepose.kernels.outcome.presses import press_at
 from cagepose.kernels.outcome.trace import BLOCKED, ESCAPES, JAMS, LIMIT, NONE, RESTS, STALLED
 from cagepose.kernels.quasistatic.run import steps_from
 from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.quasistatic.step import HELD, STUCK, State, note_touching, stand_at, write_state, write_step
+from cagepose.kernels.quasistatic.state import State, at_rest, write_state
+from cagepose.kernels.quasistatic.step import HELD, STUCK, note_touching, stand_at, write_step
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 from cagepose.kernels.stability.proof import are_balanced, with_all_freedoms
 
@@ -205,7 +206,7 @@ def press_on(
     for _ in range(SWEEPS):
         # The object comes to rest while all bodies stand, unless it is at the end of a way, and goes on.
         if not goes_on:
-            first, begun = step, State(here.position, here.quaternion, state.turn_step_rad, 0, 0)
+            first, begun = step, at_rest(here.position, here.quaternion, state.turn_step_rad, 0)
             verdict, step, here = steps_from(setting, begun, first, step_limit, run)
             note_sweep(first, step, done, 0.0, work)
             if verdict != RESTS:

@@ -24,7 +24,7 @@ from cagepose.kernels.outcome.records import Outcome
 from cagepose.kernels.outcome.trace import BLOCKED, JAMS, RESTS, STALLED, STOPS, StepRecord
 from cagepose.kernels.quasistatic.run import QuasistaticRules, steps_from
 from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.quasistatic.step import State, state_of
+from cagepose.kernels.quasistatic.state import State, at_rest, state_of
 from cagepose.kernels.quasistatic.touched_before import place_before
 
 
@@ -81,7 +81,7 @@ def run_phase(
     is_driven = begin_phase(phase, start, cases, work.memory)
     begin_pressing(start.geometry, cases, phase, work)
     move_bodies(start.geometry, phase, 0.0, work.memory)
-    state = State(position, quaternion, rules.turn_step_rad, 0, 0)
+    state = at_rest(position, quaternion, rules.turn_step_rad, 0)
     return phase_from(start, part, cases, phase, state, rules, is_driven, work)
 
 

@@ -21,7 +21,8 @@ from cagepose.kernels.quasistatic.first_contact import Twist, first_contact
 from cagepose.kernels.quasistatic.path import Path, on_faces
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts
 from cagepose.kernels.quasistatic.run import steps_from
-from cagepose.kernels.quasistatic.step import State, stand_at
+from cagepose.kernels.quasistatic.state import State, at_rest
+from cagepose.kernels.quasistatic.step import stand_at
 
 PUSHES = (0.0, 1e-5, 1e-4, 1e-3, 1e-2)
 """In sizes of the scene: how far an object is pushed out of a balance that is lost, one after the other."""
@@ -131,7 +132,7 @@ def snaps(
                     continue
             elif push > 0.0 or side < 0.0:
                 continue
-            pushed = State(begin, turned, state.turn_step_rad, 0, 0)
+            pushed = at_rest(begin, turned, state.turn_step_rad, 0)
             verdict, step, after = steps_from(setting, pushed, first_step, most, run)
             if verdict == LIMIT and most < step_limit:
                 continue
@@ -171,7 +172,7 @@ def rests_ahead(
             begin, turned = moved_along_twist(begin, turned, velocity, spin, ahead)
         if is_inside(drive, begin, turned, work):
             break
-        begun = State(begin, turned, state.turn_step_rad, 0, 0)
+        begun = at_rest(begin, turned, state.turn_step_rad, 0)
         verdict, step, after = steps_from(setting, begun, first_step, most, run)
         if verdict == LIMIT and most < step_limit:
             continue

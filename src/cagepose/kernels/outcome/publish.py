@@ -16,7 +16,7 @@ from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.cases import Part, Start, object_position
 from cagepose.kernels.outcome.motion import motion_between, motion_of_twist
 from cagepose.kernels.outcome.records import Outcome, PhaseRecord
-from cagepose.kernels.outcome.trace import AT_EDGE, LET_GO, NONE, RESTS, SCREW, STALLED, Trace
+from cagepose.kernels.outcome.trace import AT_EDGE, COULD_STAY, LET_GO, NONE, RESTS, SCREW, STALLED, Trace
 from cagepose.kernels.stability.proof import (
     OTHER_ONSET,
     PROVEN_MOVES,
@@ -148,8 +148,12 @@ def publish_events(
         if joins_steps and step + 1 < n_steps and goes_on(trace, step):
             continue
         event = outcome.events[outcome.counts[EVENTS]]
-        begins_at_edge = outcome.steps[first_step].is_at_edge
-        event.rule, event.note, event.motion = record.rule, AT_EDGE if begins_at_edge else record.note, record.motion
+        event.rule, event.note, event.motion = record.rule, record.note, record.motion
+        for of_event in range(first_step, outcome.counts[STEPS]):
+            if outcome.steps[of_event].could_stay:
+                event.note = COULD_STAY
+        if outcome.steps[first_step].is_at_edge:
+            event.note = AT_EDGE
         event.n_steps = outcome.counts[STEPS] - first_step
         first_step = outcome.counts[STEPS]
         along, through = vector_from(record.along), vector_from(record.through)

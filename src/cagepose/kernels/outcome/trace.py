@@ -32,14 +32,15 @@ VERDICT_NAMES: tuple[
 )
 
 
-TIE, BALANCED, SMALL_TURN, EDGE_TIE, AT_EDGE, PLAIN, LET_GO = 0, 1, 2, 3, 4, 5, 6
+TIE, BALANCED, SMALL_TURN, EDGE_TIE, AT_EDGE, COULD_STAY, PLAIN, LET_GO = 0, 1, 2, 3, 4, 5, 6, 7
 """Codes of notes: the index into `NOTE_NAMES`; PLAIN and LET_GO (a contact was lost) have no name."""
-NOTE_NAMES: tuple[Literal["tie", "balanced", "small turn", "edge tie", "edge"], ...] = (
+NOTE_NAMES: tuple[Literal["tie", "balanced", "small turn", "edge tie", "edge", "could stay"], ...] = (
     "tie",
     "balanced",
     "small turn",
     "edge tie",
     "edge",
+    "could stay",
 )
 
 
@@ -60,8 +61,10 @@ class StepRecord:
         Code of what a careful reader should know.
     is_at_edge
         Whether it begins only because a contact is on an edge.
-    start_position, start_quaternion
-        Pose before the step.
+    could_stay
+        Whether friction could hold the object where it begins, or on the way, and it goes on as it moves.
+    start_position, start_quaternion, start_velocity, start_spin
+        Pose before the step, and the motion that led there.
     share, driving
         How much of the phase's drive is done after it, and the sum of the drivers' forces along their ways there.
     pressed
@@ -69,7 +72,7 @@ class StepRecord:
     could_jam
         Whether forces could stand against the drive there, whatever they are.
     turn_step, n_still, n_refined
-        What else a quasistatic step began from, see `cagepose.kernels.quasistatic.step.State`.
+        What else a quasistatic step began from, see `cagepose.kernels.quasistatic.state.State`.
     """
 
     rule: int
@@ -82,8 +85,11 @@ class StepRecord:
     quaternion: Annotated[FloatArray, 4]
     note: int
     is_at_edge: bool
+    could_stay: bool
     start_position: Annotated[FloatArray, 3]
     start_quaternion: Annotated[FloatArray, 4]
+    start_velocity: Annotated[FloatArray, 3]
+    start_spin: Annotated[FloatArray, 3]
     share: float
     driving: float
     pressed: Annotated[FloatArray, MOST_PRESSING]

@@ -6,7 +6,7 @@ import math
 
 from cagepose.kernels.algebra.motion import Motion, motion_of
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, vector_from
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, vector_from
 from cagepose.kernels.boundary.features import CIRCLE, FACE, PlacedBoundary
 from cagepose.kernels.boundary.first_touch import place_after
 from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_at, cage_of, held_at, held_moved
@@ -192,7 +192,9 @@ def edge_crossing(
     not.
 
     Where it would only because contacts stray, by the square of the way, within ``reach_m``, it is passed over: they
-    are put back. So it is where one of them has no place there any more: it may have one when it is put back.
+    are put back. So it is where one of them has no place there any more: it may have one when it is put back. One that
+    begins so near to a border is passed over, too, as it may run along it; but not where it ends farther away than
+    that, as at another border, and is farther beyond than that where the motion ends.
     """
     motion = motion_of(center, velocity, spin)
     before, crossing = end_of_meeting(geometry, placement, contacts, i, motion, end, touch_m)
@@ -200,5 +202,10 @@ def edge_crossing(
         astray = strayed(geometry, placement, contacts, center, quaternion, velocity, spin, before, math.inf)
         reach = max(reach_m, STRAYED * astray)
         if still_meet(geometry, placement, contacts, i, motion, 0.0, touch_m, reach):
+            return crossing
+        slips = norm(plus(velocity, cross(spin, vector_from(contacts.rows[i].arm))))
+        if crossing * slips <= reach:
+            return math.inf
+        if end == math.inf or not still_meet(geometry, placement, contacts, i, motion, end, touch_m, -reach):
             return crossing
     return math.inf

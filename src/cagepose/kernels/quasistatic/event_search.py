@@ -44,6 +44,8 @@ HALVINGS = 40
 """How often a step is halved that a contact, or the potential, does not let end."""
 TURNED_BACK = 0.1
 """Share of the power at the start of a step. A step to a balance that goes too far by less is as good."""
+RUN_DOWN = 1e-5
+"""In sizes of the scene: so far a motion that could have ended before runs on where it ends."""
 NEAR_TIP = 1e-7
 """Fraction of a step: so near it is found where the object begins to tip."""
 BEFORE_END = 4.0
@@ -260,26 +262,44 @@ def power_ends(
     end: tuple[Vector, Quaternion],
     begun: float,
     work: QuasistaticWorkspace,
-) -> tuple[float, tuple[Vector, Quaternion]]:
-    """Return the amount of a step, and its pose, after which the object is first held, or would turn back; else those
-    of its end. The placement is that of the pose there. ``begun`` is the power of the motion at the start.
+) -> tuple[bool, bool, float, tuple[Vector, Quaternion]]:
+    """Return whether the object is held on a step, or would turn back, whether it could stay before, and the amount of
+    the step, and its pose, after which it first is; else those of its end. The placement is that of the pose there.
+    ``begun`` is the power of the motion at the start.
     """
-    power = power_left(setting, end[0], end[1], path.twist, work)
+    power, could_stay = power_left(setting, end[0], end[1], path.twist, work)
     if power >= -TURNED_BACK * max(begun, 0.0):
-        return amount, end
+        return False, could_stay, amount, end
     at_start = math.inf
     if power > -math.inf:  # a sign at the end says something if that at the start is the other one
         place_object(setting.geometry, path.position, path.quaternion, work.placement)
-        at_start = power_left(setting, path.position, path.quaternion, path.twist, work)
+        at_start, _ = power_left(setting, path.position, path.quaternion, path.twist, work)
     if at_start > 0.0:
         guard = Guard(POWER_ENDS, NO_HIT, -1, 0.0)
         first = first_past(setting, path, guard, at_start, amount, 0.0, (0.0, 0.0), work)
         if first < amount:
-            done, position, quaternion = step_to(setting, path, first, NO_HIT, work)
+            could_stay, last = run_down(setting, path, first, work)
+            done, position, quaternion = step_to(setting, path, last, NO_HIT, work)
+            if not done and last > first:
+                last = first
+                done, position, quaternion = step_to(setting, path, last, NO_HIT, work)
             if done:
-                return first, (position, quaternion)
+                return True, could_stay, last, (position, quaternion)
     place_object(setting.geometry, end[0], end[1], work.placement)
-    return amount, end
+    return False, False, amount, end
+
+
+@kernel
+def run_down(setting: Setting, path: Path, first: float, work: QuasistaticWorkspace) -> tuple[bool, float]:
+    """Return whether an object that friction holds after an amount of a path could stay before, and the amount after
+    which it stands. At the very end of such a motion any slow one is nearly another onset, so that nothing could be
+    said of its rest: it runs on a little.
+    """
+    little = RUN_DOWN * setting.size_m / speed_along(setting, path)
+    before = max(first - little, 0.5 * first)
+    done, position, quaternion = step_to(setting, path, before, NO_HIT, work)
+    could_stay = done and power_left(setting, position, quaternion, path.twist, work)[1]
+    return could_stay, first + little if could_stay else first
 
 
 @kernel

@@ -15,6 +15,7 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, dot
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, MOVES, ON_THE_WAY, equilibrium
 from cagepose.kernels.contact.metric import Frame, frame_at, twist_between, wrench_of
+from cagepose.kernels.contact.onset import cosine, goes_on
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.edge_crossing import beyond_border, still_meet
 from cagepose.kernels.quasistatic.first_contact import NO_HIT, Hit, Twist
@@ -24,6 +25,8 @@ from cagepose.kernels.quasistatic.tipping import tips
 from cagepose.kernels.quasistatic.touched_before import find_touched_before
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
+ON_ITS_PATH = 0.9
+"""Cosine between a motion and that at the start of its path. One that turns by more, at once, has left it."""
 GAP_CLOSES, CONTACT_ENDS, POWER_ENDS, BEGINS_TO_TIP = 0, 1, 2, 3
 """Which number a guard is: the gap of what is hit; how far a contact is from its end; the power of what is left of the
 load; whether the object goes on as it began.
@@ -66,7 +69,7 @@ def value_of(setting: Setting, path: Path, guard: Guard, amount: float, work: Qu
     if not done:
         return math.inf
     if guard.kind == POWER_ENDS:
-        return power_left(setting, end, turned, path.twist, work)
+        return power_left(setting, end, turned, path.twist, work)[0]
     can_ask = find_touched_before(setting, end, turned, frame_at(setting.body, turned), work)
     return -math.inf if can_ask and tips(setting, turned, path.twist, guard.spin_each_m, work) else math.inf
 
@@ -98,17 +101,23 @@ def power_of(wrench: FloatArray, frame: Frame, twist: Twist) -> float:
 @kernel
 def power_left(
     setting: Setting, position: Vector, quaternion: Quaternion, twist: Twist, work: QuasistaticWorkspace
-) -> float:
+) -> tuple[float, bool]:
     """Return the power, where the object is placed, of what is left of the load by what touched before the step;
-    -inf: it is held there; inf: that is not known.
+    -inf: it is held there; inf: that is not known. And whether it could stay there, and goes on all the same (5.62).
 
     With friction what is left is not quite the motion that begins, but both vanish together.
     """
     frame = frame_at(setting.body, quaternion)
     if not find_touched_before(setting, position, quaternion, frame, work):
-        return math.inf
-    solver = work.scratch[0].solver
-    code = equilibrium(work.ahead, frame, setting.friction.greatest, ON_THE_WAY, solver)
+        return math.inf, False
+    scratch, friction = work.scratch[0], setting.friction.greatest
+    code = equilibrium(work.ahead, frame, friction, ON_THE_WAY, scratch.solver)
+    if code == HELD_BY_FRICTION and goes_on(work.ahead, frame, friction, scratch.before, scratch.along, scratch.solver):
+        power, turned = (
+            power_of(scratch.along, frame, twist),
+            cosine(scratch.along, scratch.before, work.ahead.n_freedoms),
+        )
+        return (power, True) if power > 0.0 and turned > ON_ITS_PATH else (-math.inf, False)
     if code != MOVES:
-        return -math.inf if code <= HELD_BY_FRICTION else math.inf
-    return power_of(solver.cone.passive.residual, frame, twist)
+        return -math.inf if code <= HELD_BY_FRICTION else math.inf, False
+    return power_of(scratch.solver.cone.passive.residual, frame, twist), False

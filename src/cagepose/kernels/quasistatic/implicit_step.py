@@ -25,6 +25,7 @@ from cagepose.kernels.algebra.eigen import symmetric_eigen
 from cagepose.kernels.algebra.least_squares import MOST_FREEDOMS, PassiveSet, append_column, clear, inner, length
 from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.contact.contact_set import ContactSet
+from cagepose.kernels.contact.coulomb import coulomb_motion_along
 from cagepose.kernels.contact.equilibrium import AT_REST, MOVES, equilibrium_with_faces
 from cagepose.kernels.contact.metric import ScaledVector
 from cagepose.kernels.contact.onset import motion_with_faces
@@ -166,16 +167,28 @@ def shared_step(contacts: ContactSet, rho: float, work: ImplicitStepWorkspace, s
 
 
 @kernel
+def write_in_coordinates(work: ImplicitStepWorkspace, y: FloatArray, amount: float, out: FloatArray) -> None:
+    """Write an amount of a motion in the step's coordinates, L^T y."""
+    n = work.held.n_rows
+    for j in range(n):
+        out[j] = 0.0
+        for k in range(j, n):
+            out[j] += amount * work.factor[k, j] * y[k]
+
+
+@kernel
 def implicit_step(
     contacts: ContactSet,
     turned: ContactSet,
     friction: float,
     rho: float,
+    could_stay: bool,
     rounding_m: float,
     work: ImplicitStepWorkspace,
     solver: ContactWorkspace,
 ) -> bool:
-    """Write the step into ``work.delta``, and what the contacts carry on it; False: take the explicit step.
+    """Write the step into ``work.delta``, and what the contacts carry on it; False: take the explicit step. Where the
+    object ``could_stay`` it is the step along which the motion goes on.
 
     Given are the explicit motion ``solver.y``, ``work.curvature`` along the faces, and which contacts stick; ``turned``
     is memory for the contacts in the step's coordinates.
@@ -193,10 +206,17 @@ def implicit_step(
             turned.rows[i].drift[j] = 0.0
     solve_lower(work.factor, solver.load, work.b, n)
     terms = solver.load_terms * length(work.b, n) / length(solver.load, n)
-    if equilibrium_with_faces(turned, friction, AT_REST, work.b, terms, solver) != MOVES:
-        return False
-    if not motion_with_faces(turned, friction, work.b, work.delta, solver):
-        return False
+    if could_stay:
+        write_in_coordinates(work, solver.y, 1.0 / rho, solver.trial)
+        if not coulomb_motion_along(
+            turned, friction, work.b, terms, solver.trial, solver.cone, work.delta, solver.newton
+        ):
+            return False
+    else:
+        if equilibrium_with_faces(turned, friction, AT_REST, work.b, terms, solver) != MOVES:
+            return False
+        if not motion_with_faces(turned, friction, work.b, work.delta, solver):
+            return False
     solve_upper(work.factor, work.delta, n)
     if inner(work.delta, solver.y, n) <= 0.0:
         return False

@@ -7,7 +7,8 @@ from typing import NamedTuple
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.outcome.trace import LIMIT
 from cagepose.kernels.quasistatic.setting import Setting
-from cagepose.kernels.quasistatic.step import GOES_ON, State, next_step, stand_at
+from cagepose.kernels.quasistatic.state import State
+from cagepose.kernels.quasistatic.step import GOES_ON, next_step, stand_at
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
 
 

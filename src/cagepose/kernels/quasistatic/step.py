@@ -11,11 +11,11 @@ A step depends on its state alone, so that any step of a run can be made again.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
+from cagepose.kernels.algebra.least_squares import length
 from cagepose.kernels.algebra.pose import Quaternion
 from cagepose.kernels.algebra.tolerances import DEPENDENT_COLUMN
-from cagepose.kernels.algebra.vector import Vector, norm, scaled, vector_from
+from cagepose.kernels.algebra.vector import Vector, norm, scaled
 from cagepose.kernels.boundary.geometry import place_object
 from cagepose.kernels.contact.contact_set import ContactSet, stays_on_face
 from cagepose.kernels.contact.curvature import curvature_along, write_circulation, write_curvature
@@ -29,9 +29,9 @@ from cagepose.kernels.contact.equilibrium import (
 from cagepose.kernels.contact.find_contacts import find_contacts
 from cagepose.kernels.contact.load_curvature import has_circulation
 from cagepose.kernels.contact.loads import longest_pull, write_load
-from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, way_between
+from cagepose.kernels.contact.metric import Frame, frame_at, twist_of, way_between, write_scaled_twist
 from cagepose.kernels.contact.on_circle import is_under_circle
-from cagepose.kernels.contact.onset import find_sticking, holds_with_some_faces, onset
+from cagepose.kernels.contact.onset import find_sticking, goes_on, holds_with_some_faces, onset
 from cagepose.kernels.contact.sharing import share_evenly
 from cagepose.kernels.contact.tolerances import RESIDUAL_AT_LIMIT
 from cagepose.kernels.native.kernel import kernel
@@ -44,7 +44,6 @@ from cagepose.kernels.outcome.trace import (
     SCREW,
     STALLED,
     TRAVEL,
-    StepRecord,
 )
 from cagepose.kernels.quasistatic.event_search import begins_to_tip, furthest_step, power_ends
 from cagepose.kernels.quasistatic.first_contact import Twist
@@ -63,6 +62,7 @@ from cagepose.kernels.quasistatic.projection import DEPENDENT, FIXED, ON_FACE, c
 from cagepose.kernels.quasistatic.pushing_out import allow_depths, constrain_contacts, pushed_out
 from cagepose.kernels.quasistatic.seat import seated
 from cagepose.kernels.quasistatic.setting import Setting
+from cagepose.kernels.quasistatic.state import State, write_state
 from cagepose.kernels.quasistatic.step_length import longest_step, straightened, turn_of_normals
 from cagepose.kernels.quasistatic.tipping import may_tip
 from cagepose.kernels.quasistatic.workspace import QuasistaticWorkspace
@@ -91,28 +91,6 @@ GOES_ON = -1
 """Instead of the code of a verdict: the phase goes on."""
 
 
-class State(NamedTuple):
-    """What a step begins from.
-
-    Attributes
-    ----------
-    position, quaternion
-        Pose of the object, as seen from its centre of gravity.
-    turn_step_rad
-        How far this step may turn: less after one that did not get as far as it should.
-    n_still
-        Steps without progress before it.
-    n_refined
-        How often a rest has been put on its faces in this phase.
-    """
-
-    position: Vector
-    quaternion: Quaternion
-    turn_step_rad: float
-    n_still: int
-    n_refined: int
-
-
 @kernel
 def carried_by(contacts: ContactSet) -> int:
     """Return the rule of a motion: FREE, SLIDE or PIVOT."""
@@ -125,7 +103,7 @@ def carried_by(contacts: ContactSet) -> int:
 
 @kernel
 def impending_motion(setting: Setting, frame: Frame, work: QuasistaticWorkspace) -> int:
-    """Return the code of the onset at the pose, with the motion in the solver.
+    """Return the code of the onset from rest at the pose, with the motion in the solver.
 
     Where Newton's method does not find it, it is looked for among all contact modes, as another onset beside a rest is.
     """
@@ -141,6 +119,23 @@ def impending_motion(setting: Setting, frame: Frame, work: QuasistaticWorkspace)
     for k in range(contacts.n_freedoms):
         solver.y[k] = tree.y[k]
     return MOVES
+
+
+@kernel
+def motion_there(setting: Setting, state: State, frame: Frame, work: QuasistaticWorkspace) -> tuple[int, bool]:
+    """Return the code of what an object does that comes to a pose as the state says, with the motion in the solver, and
+    whether friction could hold it there: an object that moves goes on as long as Coulomb's law lets it (5.62).
+    """
+    contacts, scratch, friction = work.contacts, work.scratch[0], setting.friction.greatest
+    code = impending_motion(setting, frame, work)
+    if code != HELD_BY_FRICTION or state.n_still > 0:
+        return code, False
+    write_scaled_twist(state.velocity, state.spin, frame, scratch.before)
+    if length(scratch.before, contacts.n_freedoms) == 0.0:
+        return code, False
+    if goes_on(contacts, frame, friction, scratch.before, scratch.solver.y, scratch.solver):
+        return MOVES, True
+    return impending_motion(setting, frame, work), False
 
 
 @kernel
@@ -193,10 +188,12 @@ def next_twist(
     frame: Frame,
     turn_step_rad: float,
     is_still: bool,
+    could_stay: bool,
     work: QuasistaticWorkspace,
 ) -> tuple[Twist, bool]:
     """Return the twist to follow from a pose that moves, and whether it is that of an implicit step in a stable valley,
-    whose end is known; forces and sticking are then those of the step. ``is_still``: a step before it led nowhere.
+    whose end is known; forces and sticking are then those of the step. ``is_still``: a step before it led nowhere;
+    ``could_stay``: friction could hold it.
     """
     contacts, scratch, friction = work.contacts, work.scratch[0], setting.friction.greatest
     y, is_stable = scratch.solver.y, False
@@ -226,7 +223,14 @@ def next_twist(
         is_round = turns * end > STIFF * turn_step_rad and turns > ROUND * norm(spin)
         for _ in range(LONGER if is_round else 1):
             if not (is_stiff or is_round) or not implicit_step(
-                contacts, work.turned, friction, rho, setting.tolerances.rounding_m, scratch.stiff, scratch.solver
+                contacts,
+                work.turned,
+                friction,
+                rho,
+                could_stay,
+                setting.tolerances.rounding_m,
+                scratch.stiff,
+                scratch.solver,
             ):
                 break
             is_stable = is_valley
@@ -308,7 +312,8 @@ def write_step(
     """
     trace = work.trace
     record = trace.rows[step]
-    record.rule, record.motion, record.note, record.is_at_edge = rule, motion, PLAIN, is_at_edge
+    record.rule, record.motion, record.note = rule, motion, PLAIN
+    record.is_at_edge, record.could_stay = is_at_edge, False
     record.distance = record.share = record.driving = 0.0  # the way is told by the poses
     record.could_jam = False
     for k in range(len(record.pressed)):
@@ -382,16 +387,19 @@ def next_step(
     position, quaternion, n_refined = state.position, state.quaternion, state.n_refined
     write_state(work.trace.rows[step], state)
 
-    # What happens from rest at this pose? A rest is put on its faces, and looked at again; where it is none then but
-    # for little, it ends where it was.
-    code, is_rest, would_hold = UNSOLVED, False, False
+    # Does it move there? A rest is put on its faces, and looked at again; where it is none then but for little, it ends
+    # where it was.
+    code, is_rest, would_hold, could_stay = UNSOLVED, False, False, False
     rest, has_rested = (position, quaternion), False
     for _ in range(REFINEMENTS + 2):
         note_touching(work)
         frame = frame_at(setting.body, quaternion)
         solver.load_terms = write_load(setting.load, position, quaternion, frame, solver.load)
         would_hold = fits and holds_with_some_faces(work.contacts, frame, setting.friction.greatest, solver)
-        code = impending_motion(setting, frame, work) if fits else UNSOLVED
+        if fits and not has_rested:
+            code, could_stay = motion_there(setting, state, frame, work)
+        else:
+            code = impending_motion(setting, frame, work) if fits else UNSOLVED
         keep_stopped(solver.stopped, position, frame, work.path.constraints)
         is_rest = code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
         if has_rested and code == MOVES and solver.residual <= RESIDUAL_AT_LIMIT:
@@ -408,20 +416,22 @@ def next_step(
     if code == HELD_BY_FRICTION:  # in the balance beside it that needs none, if there is one
         position, quaternion = seated(setting, position, quaternion, work)
         fits = find_placed_contacts(setting, position, quaternion, work)
-    here = State(position, quaternion, state.turn_step_rad, state.n_still, n_refined)
+    here = State(position, quaternion, state.velocity, state.spin, state.turn_step_rad, state.n_still, n_refined)
     if code != MOVES:
         write_step(work, step, HELD if is_rest else STUCK, NONE, False, position, quaternion)
         return (RESTS if is_rest else STALLED), here, fits
 
     # Which way, and how far?
+    would_hold = would_hold and not could_stay
     frame, is_still = frame_at(setting.body, quaternion), state.n_still > 0
-    twist, is_stable = next_twist(setting, position, quaternion, frame, state.turn_step_rad, is_still, work)
+    velocity, spin = twist_of(solver.y, frame)
+    for k in range(work.contacts.n_freedoms):
+        work.scratch[0].before[k] = solver.y[k]
+    twist, is_stable = next_twist(setting, position, quaternion, frame, state.turn_step_rad, is_still, could_stay, work)
     rule = carried_by(work.contacts)
-    if rule == FREE:
-        velocity, spin = twist_of(solver.y, frame_at(setting.body, quaternion))
-        if nothing_ahead(setting, position, quaternion, velocity, spin):
-            write_escape(work, step, would_hold, velocity, position, quaternion)
-            return ESCAPES, here, fits
+    if rule == FREE and nothing_ahead(setting, position, quaternion, velocity, spin):
+        write_escape(work, step, would_hold, velocity, position, quaternion)
+        return ESCAPES, here, fits
     path, is_whole = along_faces(setting, Path(position, quaternion, twist), work)
     motion = TRAVEL if norm(path.twist.spin) == 0.0 else SCREW
     amount, as_planned, end, turned = furthest_step(setting, path, work)
@@ -436,42 +446,21 @@ def next_step(
     if rule != FREE and amount > 0.0:
         begun, may_rest, is_held = power_of(solver.y, frame, path.twist), setting.friction.greatest > 0.0, False
         if may_rest:
-            first, (end, turned) = power_ends(setting, path, amount, (end, turned), begun, work)
-            amount, is_held = first, first < amount
+            is_held, could, amount, (end, turned) = power_ends(setting, path, amount, (end, turned), begun, work)
+            could_stay = could_stay or could
         if not (is_held or is_stable) and may_tip(setting, path.twist, amount):
             begins, amount, (end, turned) = begins_to_tip(setting, path, amount, (end, turned), work)
             if begins:
                 turn_step = setting.turn_step_rad / AS_IT_TIPS
                 if may_rest:
-                    _, (end, turned) = power_ends(setting, path, amount, (end, turned), begun, work)
+                    _, could, _, (end, turned) = power_ends(setting, path, amount, (end, turned), begun, work)
+                    could_stay = could_stay or could
 
     # Go there.
     moved = way_between(position, quaternion, end, turned, setting.body.reach_m)
     n_still = 0 if moved > STILL * setting.size_m else state.n_still + 1
     fits = find_placed_contacts(setting, end, turned, work)
     write_step(work, step, rule, motion, would_hold, end, turned)
-    there = State(end, turned, turn_step, n_still, n_refined)
+    work.trace.rows[step].could_stay = could_stay
+    there = State(end, turned, velocity, spin, turn_step, n_still, n_refined)
     return (STALLED if n_still == STILL_STEPS else GOES_ON), there, fits
-
-
-@kernel
-def write_state(record: StepRecord, state: State) -> None:
-    """Write what a step began from."""
-    record.turn_step, record.n_still, record.n_refined = state.turn_step_rad, state.n_still, state.n_refined
-    for k in range(3):
-        record.start_position[k] = state.position[k]
-    for k in range(4):
-        record.start_quaternion[k] = state.quaternion[k]
-
-
-@kernel
-def state_of(record: StepRecord) -> State:
-    """Return what a step began from, as `write_state` has it."""
-    q = record.start_quaternion
-    return State(
-        vector_from(record.start_position),
-        (q[0], q[1], q[2], q[3]),
-        record.turn_step,
-        record.n_still,
-        record.n_refined,
-    )

@@ -7,7 +7,7 @@ from cagepose.kernels.algebra.vector import Vector, cross, minus, norm, scaled, 
 from cagepose.kernels.contact.contact_set import stays_on_face
 from cagepose.kernels.contact.equilibrium import HELD_BY_FRICTION, HELD_WITHOUT_FRICTION, MOVES
 from cagepose.kernels.contact.metric import frame_at, twist_of
-from cagepose.kernels.contact.onset import onset
+from cagepose.kernels.contact.onset import goes_on, onset
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.first_contact import Twist
 from cagepose.kernels.quasistatic.setting import Setting
@@ -50,10 +50,14 @@ def tips(
     than the object turned at its start; or the object is held there.
     """
     frame = frame_at(setting.body, quaternion)
-    code = onset(work.ahead, frame, setting.friction.greatest, work.scratch[0].solver)
+    scratch, friction = work.scratch[0], setting.friction.greatest
+    solver = scratch.solver
+    code = onset(work.ahead, frame, friction, solver)
+    if code == HELD_BY_FRICTION and goes_on(work.ahead, frame, friction, scratch.before, solver.y, solver):
+        code = MOVES
     if code != MOVES:
         return code in (HELD_WITHOUT_FRICTION, HELD_BY_FRICTION)
-    velocity, spin = twist_of(work.scratch[0].solver.y, frame)
+    velocity, spin = twist_of(solver.y, frame)
     share = norm(velocity) / norm(twist.velocity)
     more, speed, reach_m = minus(spin, scaled(twist.spin, share)), norm(velocity), setting.body.reach_m
     known = max(TIPS * speed, share * norm(twist.spin) * reach_m, spin_each_m * speed * reach_m)

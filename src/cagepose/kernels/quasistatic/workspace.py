@@ -17,6 +17,7 @@ from cagepose.kernels.boundary.geometry import (
     most_elements,
 )
 from cagepose.kernels.contact.contact_set import ContactSet, contact_set_for
+from cagepose.kernels.contact.metric import ScaledVector
 from cagepose.kernels.contact.workspace import ContactWorkspace
 from cagepose.kernels.outcome.trace import Trace, empty_trace
 from cagepose.kernels.quasistatic.implicit_step import ImplicitStepWorkspace
@@ -25,10 +26,20 @@ from cagepose.kernels.stability.proof import ProofWorkspace, empty_proof_workspa
 
 
 class SolverWorkspace:
-    """Workspace of fixed size: what the solvers need; a record."""
+    """Workspace of fixed size; a record.
+
+    Attributes
+    ----------
+    solver, stiff
+        What the solvers need.
+    before, along
+        Scaled twists: the motion that is to go on, and the one that goes on as it.
+    """
 
     solver: ContactWorkspace
     stiff: ImplicitStepWorkspace
+    before: ScaledVector
+    along: ScaledVector
 
 
 class QuasistaticWorkspace(NamedTuple):
