@@ -10,7 +10,7 @@ import numpy as np
 from cagepose.files.step.open_cascade import xyz
 from cagepose.files.step.tolerances import SAME_OF_SIZE
 from cagepose.model.checks import FloatArray
-from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, Surface
+from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, TORUS, Surface
 
 ASLANT = 0.9
 """Cosine between axes that are asked no further whether they are one: to cross them takes ten times as long."""
@@ -21,7 +21,7 @@ def surface_of_face(face: Any, corners: FloatArray) -> Surface | None:
     None: it is none of ours.
     """
     from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane, GeomAbs_Sphere
+    from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane, GeomAbs_Sphere, GeomAbs_Torus
 
     adaptor = BRepAdaptor_Surface(face)
     kind = adaptor.GetType()
@@ -36,6 +36,10 @@ def surface_of_face(face: Any, corners: FloatArray) -> Surface | None:
     elif kind == GeomAbs_Sphere:
         ball = adaptor.Sphere()
         found = Surface(SPHERE, xyz(ball.Location()), (0.0, 0.0, 0.0), ball.Radius())
+    elif kind == GeomAbs_Torus:
+        ring = adaptor.Torus()
+        place, axis = xyz(ring.Location()), xyz(ring.Axis().Direction())
+        found = Surface(TORUS, place, axis, ring.MinorRadius(), core_m=ring.MajorRadius())
     else:
         return None
     return _facing_out(found, corners)
@@ -95,6 +99,9 @@ def _are_one(one: Surface, other: Surface, size: float) -> bool:
     if one.kind == PLANE:
         return along > 0.0 and abs(float(between @ axis)) <= slack
     height = float(between @ axis)
+    if one.kind == TORUS:
+        sizes = max(abs(one.radius_m - other.radius_m), abs(one.core_m - other.core_m))
+        return max(float(np.linalg.norm(between)), sizes) <= slack
     off = float(np.linalg.norm(between - height * axis))
     slope = other.slope if along > 0.0 else -other.slope
     radius = abs(one.radius_m) + one.slope * height

@@ -16,7 +16,7 @@ from cagepose.kernels.circles.beside_flat import (
     places_by_point,
 )
 from cagepose.kernels.circles.beside_round import Round, common_with_line, common_with_round, places_by_round
-from cagepose.kernels.circles.places import Common, Place
+from cagepose.kernels.circles.places import LEAST, Common, Place, angle_toward, on_circle, write_place
 from cagepose.kernels.native.kernel import kernel
 
 SIDE_BY_SIDE = 1e-6
@@ -37,6 +37,30 @@ def is_sharp(circle: Feature, other: Feature) -> bool:
     if other.kind == CIRCLE:
         return True
     return bool(other.taper == 0.0 and abs(other.radius) < SHARP * circle.length)
+
+
+@kernel
+def crosses_edge(circle: Feature, other: Feature) -> bool:
+    """Whether both a circle and a feature that it meets are sharp edges, which cross where they touch."""
+    return bool(is_sharp(circle, other) and circle.radius + other.radius < SHARP * circle.length)
+
+
+@kernel
+def meet_all_around(one: Feature, other: Feature) -> bool:
+    """Whether two features, one of them a circle, touch where all of it is equally far: not so two sharp circles."""
+    return bool(one.kind != other.kind or one.radius + other.radius > 0.0)
+
+
+@kernel
+def write_place_on(one: Feature, other: Feature, angle: float, out: Place) -> None:
+    """Write the place at an angle of a circle, of two the first one, that is equally far all around."""
+    if one.kind != CIRCLE or other.kind != CIRCLE:
+        write_place(out, angle, 0.0, LEAST, True)
+        return
+    other_angle = angle_toward(circle_of(other), on_circle(circle_of(one), angle).point)
+    if other.length < one.length:
+        angle = angle_toward(circle_of(one), on_circle(circle_of(other), other_angle).point)
+    write_place(out, angle, other_angle, LEAST, True)
 
 
 @kernel
@@ -83,7 +107,7 @@ def circle_meeting(a: PlacedBoundary, i: int, b: PlacedBoundary, j: int, place: 
     if other.kind == VERTEX and other.radius + circle.radius == 0.0:
         return without_normal(gap)
     if is_sharp(circle, other):
-        if circle.radius + other.radius < SHARP * circle.length:
+        if crosses_edge(circle, other):
             if norm(cross(common.tangent, common.other_tangent)) < SIDE_BY_SIDE:
                 return without_normal(abs(gap))
             is_back = is_turned(a, i, common.point, b, j, common.other_point, normal, gap < 0.0)

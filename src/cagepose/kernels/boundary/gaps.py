@@ -15,7 +15,7 @@ import numpy as np
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.circle import is_on_arc
-from cagepose.kernels.boundary.circle_meeting import common_at, is_core
+from cagepose.kernels.boundary.circle_meeting import common_at, is_core, meet_all_around, write_place_on
 from cagepose.kernels.boundary.extents import extent_of, surely_apart
 from cagepose.kernels.boundary.features import (
     CIRCLE,
@@ -34,12 +34,12 @@ from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_at, hel
 from cagepose.kernels.boundary.meeting import between_cores, both_reach, meeting
 from cagepose.kernels.boundary.meetings import find_circle_places, slack_of
 from cagepose.kernels.boundary.met import Meeting, swapped
-from cagepose.kernels.boundary.surfaces import crossing, has_surface
+from cagepose.kernels.boundary.surfaces import crossing, has_surface, most_crossings
 from cagepose.kernels.boundary.tapered import nearest_on_axis
 from cagepose.kernels.boundary.touching import MOST_PAIRS, MOST_PLACES
 from cagepose.kernels.boundary.tree import EDGES, FACES, SAFE, VERTICES, Node, boxes_apart
 from cagepose.kernels.boundary.within import root_has_surfaces
-from cagepose.kernels.circles.places import SADDLE, WHOLE, Place, write_place
+from cagepose.kernels.circles.places import SADDLE, WHOLE, Place
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
 
@@ -198,8 +198,8 @@ def add_gaps(
     if n_places == WHOLE:
         for k in range(PLACES_OF_WHOLE):
             angle = circle.start + circle.width * k / PLACES_OF_WHOLE
-            write_place(work.places[k], angle, 0.0, 0, True)
-        n_places = 0 if one.kind == other.kind else PLACES_OF_WHOLE
+            write_place_on(one, other, angle, work.places[k])
+        n_places = PLACES_OF_WHOLE if meet_all_around(one, other) else 0
     for k in range(n_places):
         place = work.places[k]
         if place.kind != SADDLE and is_on_arc(circle, place.angle, SLACK_OF_TOUCH * geometry.touch_m):
@@ -307,7 +307,7 @@ def is_between(body: PlacedBoundary, met: Meeting, touch_m: float, waiting: IntA
             for i in range(node.first, node.last):
                 if not has_surface(own.features[i]):
                     continue
-                for which in range(2):
+                for which in range(most_crossings(own.features[i])):
                     found = crossing(own, i, start, way, met.gap, 0.0, which)
                     if found.is_one and touch_m < found.along < met.gap - touch_m and found.beyond < -touch_m:
                         return True
