@@ -8,7 +8,7 @@ from cagepose.kernels.boundary.circle import circle_of
 from cagepose.kernels.boundary.features import CIRCLE, FACE, VERTEX, Feature, PlacedBoundary
 from cagepose.kernels.boundary.meeting import is_turned
 from cagepose.kernels.boundary.met import SHARP, Meeting, without_normal
-from cagepose.kernels.circles.beside_circle import common_with_circle, places_by_circle
+from cagepose.kernels.circles.beside_circle import common_with_circle, near_places_by_circle
 from cagepose.kernels.circles.beside_flat import (
     common_with_plane,
     common_with_point,
@@ -72,14 +72,14 @@ def is_core(circle: Feature, other: Feature) -> bool:
 @kernel
 def find_places(circle: Feature, other: Feature, flat_m: float, places: Rows[Place]) -> int:
     """Write all places where the distance of a circle from another feature is stationary; return how many there are,
-    `WHOLE`: all of it is equally far, to a length.
+    `WHOLE`: all of it is equally far, to a length. Of two circles those on the far side of one are left out.
     """
     if other.kind == FACE:
         return places_by_plane(circle_of(circle), vector_from(other.direction), flat_m, places)
     if other.kind == VERTEX:
         return places_by_point(circle_of(circle), vector_from(other.point), flat_m, places)
     if other.kind == CIRCLE:
-        return places_by_circle(circle_of(circle), circle_of(other), flat_m, places)
+        return near_places_by_circle(circle_of(circle), circle_of(other), flat_m, places)
     return places_by_round(circle_of(circle), round_of(other), flat_m, places)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, scaled, vector_from
-from cagepose.kernels.boundary.circle import is_on_arc
+from cagepose.kernels.boundary.circle import circle_of, is_on_arc
 from cagepose.kernels.boundary.circle_meeting import common_at, is_core, meet_all_around, write_place_on
 from cagepose.kernels.boundary.extents import extent_of, surely_apart
 from cagepose.kernels.boundary.features import (
@@ -32,13 +32,14 @@ from cagepose.kernels.boundary.features import (
 )
 from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_at, held_at
 from cagepose.kernels.boundary.meeting import between_cores, both_reach, meeting
-from cagepose.kernels.boundary.meetings import find_circle_places, slack_of
+from cagepose.kernels.boundary.meetings import EQUALLY_FAR, find_circle_places, slack_of
 from cagepose.kernels.boundary.met import Meeting, swapped
 from cagepose.kernels.boundary.surfaces import crossing, has_surface, most_crossings
 from cagepose.kernels.boundary.tapered import nearest_on_axis
 from cagepose.kernels.boundary.touching import MOST_PAIRS, MOST_PLACES
 from cagepose.kernels.boundary.tree import EDGES, FACES, SAFE, VERTICES, Node, boxes_apart
 from cagepose.kernels.boundary.within import root_has_surfaces
+from cagepose.kernels.circles.beside_circle import places_by_circle
 from cagepose.kernels.circles.places import SADDLE, WHOLE, Place
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
@@ -194,7 +195,11 @@ def add_gaps(
         add_gap(geometry, held, i, cage, j, straight_gap(held, i, cage, j), narrowest, work)
         return
     circle = one if one.kind == CIRCLE else other
-    n_places = find_circle_places(one, other, geometry.touch_m, work.places)
+    if one.kind == CIRCLE and other.kind == CIRCLE:  # in a hole, the far side of its mouth counts, too
+        flat_m = EQUALLY_FAR * geometry.touch_m
+        n_places = places_by_circle(circle_of(one), circle_of(other), flat_m, work.places)
+    else:
+        n_places = find_circle_places(one, other, geometry.touch_m, work.places)
     if n_places == WHOLE:
         for k in range(PLACES_OF_WHOLE):
             angle = circle.start + circle.width * k / PLACES_OF_WHOLE

@@ -40,6 +40,7 @@ from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_P
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.boundary.twins import append_meeting
 from cagepose.kernels.boundary.within import is_within, nearest_surface
+from cagepose.kernels.circles.beside_circle import place_by_circle_near
 from cagepose.kernels.circles.beside_round import place_by_round_near
 from cagepose.kernels.circles.places import GREATEST, SADDLE, WHOLE, Place, write_place
 from cagepose.kernels.native.kernel import kernel
@@ -251,6 +252,8 @@ def find_circle_places(one: Feature, other: Feature, touch_m: float, places: Row
 def find_places_near(one: Feature, other: Feature, angle: float, touch_m: float, places: Rows[Place]) -> int:
     """As `find_circle_places`, but the place that is nearest to an angle alone, if that is told without the others."""
     circle, beside = (one, other) if one.kind == CIRCLE else (other, one)
+    if one.kind == CIRCLE and other.kind == CIRCLE:
+        return place_by_circle_near(circle_of(one), circle_of(other), angle, EQUALLY_FAR * touch_m, places)
     if circle.kind != CIRCLE or beside.kind != LINE:
         return find_circle_places(one, other, touch_m, places)
     return place_by_round_near(circle_of(circle), round_of(beside), angle, EQUALLY_FAR * touch_m, places)

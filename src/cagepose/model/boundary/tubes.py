@@ -46,9 +46,9 @@ def tube_part(surface: ExactSurface, region: int) -> TubePart | None:
         return None
     around = [curve for curve in curves if abs(float(curve.axis @ np.array(torus.axis))) > ALONG_AXIS]
     across = [curve for curve in curves if abs(float(curve.axis @ np.array(torus.axis))) <= ALONG_AXIS]
-    corners = surface.vertices_m[surface.triangles[surface.regions.of_triangles == region]]
+    of_region = surface.triangles[surface.regions.of_triangles == region]
     frame = _frame_of(torus)
-    middles = _angles(torus, frame, corners.mean(axis=1))
+    middles = _middles(torus, frame, surface.vertices_m[of_region])
     psi = _between([_end_psi(surface, region, curve, frame) for curve in around], middles[:, 0])
     turn = _between([_end_turn(torus, curve, frame) for curve in across], middles[:, 1])
     if psi is None or turn is None:
@@ -88,11 +88,15 @@ def _frame_of(torus: Surface) -> FloatArray:
     return Pose(np.array(torus.point_m), turn_from_z(np.array(torus.axis))).rotation
 
 
-def _angles(torus: Surface, frame: FloatArray, places_m: FloatArray) -> FloatArray:
-    """Return the angles of normals from the plane of the circle, and those around the axis, at places, (n, 2)."""
-    seen = (places_m - np.array(torus.point_m)) @ frame
-    off = np.hypot(seen[:, 0], seen[:, 1]) - torus.core_m
-    return np.stack([np.arctan2(seen[:, 2], off), np.arctan2(seen[:, 1], seen[:, 0])], axis=1)
+def _middles(torus: Surface, frame: FloatArray, corners_m: FloatArray) -> FloatArray:
+    """Return angles of normals from the plane of the circle, and angles around the axis, in the middle of triangles,
+    (n, 2): the mean of those at their corners, (n, 3, 3), which are on the torus, as no other place of them is.
+    """
+    seen = (corners_m - np.array(torus.point_m)) @ frame
+    off = np.hypot(seen[..., 0], seen[..., 1]) - torus.core_m
+    angles = np.stack([np.arctan2(seen[..., 2], off), np.arctan2(seen[..., 1], seen[..., 0])], axis=-1)
+    found: FloatArray = np.unwrap(angles, axis=1).mean(axis=1)
+    return found
 
 
 def _end_psi(surface: ExactSurface, region: int, curve: Curve, frame: FloatArray) -> float:
