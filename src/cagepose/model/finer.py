@@ -37,7 +37,7 @@ def finer(
         np.minimum.at(other, which[:, k], on)
     for first, second in np.unique(np.stack([one, other], axis=1), axis=0).tolist():
         mine = (one == first) & (other == second)
-        known = [surfaces[k] for k in {first, second} if k >= 0]
+        known = list(dict.fromkeys(surfaces[k] for k in {first, second} if k >= 0))
         if any(surface.is_round for surface in known):
             middles[mine] = onto(middles[mine], known)
             for torus in known if len(known) == 2 else ():
