@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from cagepose import Run, Scene, run
-from exchange import machined_parts, machined_truths
+from exchange import machined_parts, machined_rims, machined_truths
 from exchange.cad_parts import Part
 from exchange.machined_case import CASES, Case, Reader, cases_of
 from exchange.path_oracle import Between, part_of
@@ -76,6 +76,16 @@ def check_exactly(name: str, reader: Reader) -> None:
 def test_step_ends_where_it_has_to(name, tmp_path):
     """As it is imported: as our primitives where it is a few of them, else as facets that stand for its surfaces."""
     check_exactly(name, Reader(tmp_path, "step"))
+
+
+@pytest.mark.usefixtures("in_this_process")
+@pytest.mark.parametrize("name", cases_of(machined_rims))
+def test_rounded_rims_are_tori(name, tmp_path):
+    case, reader = case_of(name), Reader(tmp_path, "step")
+    shapes = [shape for one in (case.held, *case.cage) if isinstance(one, Part) for shape in reader(one)]
+    assert all((shape.on >= 0).all() for shape in shapes)
+    assert {surface.kind for shape in shapes for surface in shape.surfaces} >= {"torus", "plane"}
+    assert reader.error <= 1e-7
 
 
 @pytest.mark.usefixtures("in_this_process")

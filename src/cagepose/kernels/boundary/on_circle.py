@@ -24,7 +24,7 @@ class OnCircle:
     length, axis, outward
         Its radius, zero: it is of none; its axis, and the direction from its centre to the place.
     is_of_cage
-        Whose it is.
+        Whose it is; of two, along which tubes touch, the one whose normals lead away from the axis.
     before, after
         How far to either side along it, about its axis, it touches as it does at the place, radians.
     is_on_ball, ball
@@ -56,6 +56,8 @@ def write_on_circle(
     if one.kind == CIRCLE:
         out.is_of_cage = False
         write_along(one, place, vector_from(row.normal), other, center, out)
+        if other.kind == CIRCLE:
+            out.is_of_cage = dot(vector_from(row.normal), outward_at(one, place)) < 0.0
     elif other.kind == CIRCLE:
         out.is_of_cage = True
         write_along(other, there, vector_from(row.normal), one, center, out)
