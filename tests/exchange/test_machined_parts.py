@@ -85,14 +85,15 @@ def test_step_ends_where_it_has_to(name, tmp_path):
 @pytest.mark.parametrize("name", cases_of(machined_rims))
 def test_rounded_rims_are_tori(name, tmp_path):
     """Read back from a file they are as Open CASCADE has them, to a thousand-millionth."""
-    case, reader = case_of(name), Reader(tmp_path, "step")
+    case, reader, kinds = case_of(name), Reader(tmp_path, "step"), set[str]()
     for part in (case.held, *case.cage):
         if isinstance(part, Part):
             (shape,) = reader(part)
             assert exact_faces(shape).n_facets == 0
-            assert {"torus", "plane"} <= exact_faces(shape).of_kinds.keys()
+            kinds |= exact_faces(shape).of_kinds.keys()
             assert shape_moments(shape).volume_m3 == pytest.approx(1e-9 * moments_of(part.solid).Mass(), rel=1e-9)
             assert reader.error <= 1e-9 * float(np.ptp(1e3 * shape.vertices_m))
+    assert "torus" in kinds
 
 
 @pytest.mark.usefixtures("in_this_process")
