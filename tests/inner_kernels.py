@@ -38,6 +38,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     from cagepose.kernels.boundary.overlap import empty_overlap_work, find_overlap
     from cagepose.kernels.boundary.queue import empty_queue
     from cagepose.kernels.boundary.touching import empty_meetings
+    from cagepose.kernels.boundary.within import depth_in
     from cagepose.kernels.circles.beside_circle import places_by_circle
     from cagepose.kernels.circles.beside_round import Round, places_by_round
     from cagepose.kernels.circles.places import Circle, Place
@@ -63,6 +64,7 @@ def entries() -> Iterator[tuple[Any, tuple[object, ...]]]:
     yield find_meetings, (body, body, 0.0, found)
     yield number_groups, (body, body, 0.0, found)
     yield find_overlap, (body, body, 0.0, empty_overlap_work(NO_BOUNDARY, NO_BOUNDARY))
+    yield depth_in, (NO_BOUNDARY, origin, 0.0, found.waiting)
     search = of_boundaries.Search(motion, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     yield of_boundaries.first_to_meet, (body, body, search, found, empty_queue(), body)
     one = (body, 0, body, 0, motion, 0.0, 0.0, 0.0, 0.0, body, found.places, found.waiting, found.kept, 0)

@@ -7,11 +7,12 @@ radii there: of the angle along a circle, of the height along a line. The mouths
 from __future__ import annotations
 
 from decimal import Decimal, localcontext
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 import pytest
 
+from boundary.lathe import rounded_hole, rounded_rod
 from cagepose import Box, Pose
 from cagepose.kernels.algebra.record import empty_record
 from cagepose.kernels.boundary.bend import Bend, curvatures, write_bend
@@ -24,7 +25,7 @@ from cagepose.model.boundary.features import boundary_of
 from cagepose.model.hole import Chamfer, Hole
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Shape, Sphere
 from shapes.convex_bodies import CUBE
-from shapes.turned_bodies import circles_of, placed_at
+from shapes.turned_bodies import Circles, circles_of, placed_at
 
 TOUCH_M, FARTHEST = 1e-9, 1.0
 STEP, SMALL, NEWTON = Decimal("1e-15"), Decimal("1e-22"), 3
@@ -32,7 +33,8 @@ KINDS = {VERTEX: "vertex", LINE: "line", FACE: "face", CIRCLE: "circle"}
 PAIRS = {"vertex-vertex", "vertex-line", "vertex-face", "vertex-circle", "line-line", "line-circle", "face-circle"}
 PAIRS |= {"circle-circle", "circle-tapered", "line-tapered", "tapered-vertex", "mouth-vertex", "mouth-circle"}
 PAIRS |= {"line-mouth", "tapered-mouth", "circle-wall", "vertex-wall", "circle-tapered wall"}
-PAIRS |= {"vertex-tapered wall"}
+PAIRS |= {"vertex-tapered wall", "tube-vertex", "tube-line", "face-tube", "tube-tube", "tube-circle", "tube-tapered"}
+PAIRS |= {"inner tube-vertex", "inner tube-line", "inner tube-circle", "inner tube-tube"}
 
 
 @pytest.fixture(autouse=True)
@@ -97,6 +99,23 @@ def bodies(rng: np.random.Generator, n: int):
             part = over_hole(pose)[rng.integers(4)]
         hole = Hole(0.55, 1.5, chamfer)
         yield (hole, part) if rng.random() < 0.2 else (part, hole)
+
+
+def tubes(rng: np.random.Generator, n: int):
+    """Yield the object and the cage, near each other: one has a rounded rim, or a hole with a rounded mouth."""
+    rod, plate = rounded_rod(0.5, 1.2, 0.2), rounded_hole(0.55, 0.2, 4.0, 1.5)
+    core = circles_of(Cylinder(0.3, 0.8))
+    around = Circles(core.centers, core.axes, core.radii, 0.2)
+    for index in range(n):
+        if index % 2 == 0:
+            which = int(rng.integers(8))
+            other, beside = (rod, around) if which == 7 else (parts()[which], circles_of(parts()[which]))
+            pose = placed_at(around, beside, rng.normal(size=4), rng.normal(size=3), 0.1)
+            yield rod.moved(pose), other
+            continue
+        pose = Pose((*rng.uniform(-0.15, 0.15, 2), rng.uniform(-0.6, 0.5)), (1.0, *rng.normal(size=3) * 0.2))
+        part = rod.moved(pose) if rng.random() < 0.4 else [*pegs(pose), *over_hole(pose)][rng.integers(8)]
+        yield (plate, part) if rng.random() < 0.2 else (part, plate)
 
 
 def placed(part: Shape):
@@ -200,6 +219,8 @@ def gap_of(one: Curve, other: Curve, face_normal, way) -> Decimal:
 
 
 def name_of(feature, out: np.ndarray, place: np.ndarray) -> str:
+    if feature.kind == CIRCLE and feature.radius > 0.0:
+        return "inner tube" if out @ (place - feature.radius * out - feature.point) < 0.0 else "tube"
     if feature.kind == CIRCLE:
         return "mouth" if out @ (place - feature.point) < 0.0 else "circle"
     if feature.kind == LINE:
@@ -211,7 +232,7 @@ def name_of(feature, out: np.ndarray, place: np.ndarray) -> str:
 def test_normals_and_second_derivatives_are_those_of_the_gap(cases, say):
     rng, seen, wrong = np.random.default_rng(31), dict[str, int](), list[str]()
     worst = [0.0, 0.0, 0.0]
-    for held_part, cage_part in bodies(rng, cases(60, 1000)):
+    for held_part, cage_part in chain(bodies(rng, cases(60, 1000)), tubes(rng, cases(40, 1000))):
         held, cage = placed(held_part), placed(cage_part)
         for i, j, met in meetings(held, cage):
             one, other = held.features[i], cage.features[j]

@@ -10,7 +10,10 @@ import numpy as np
 import pytest
 
 from cagepose import Run, Scene, run
-from exchange import machined_parts, machined_truths
+from cagepose.files.step.open_cascade import moments_of
+from cagepose.model.boundary.inexact import exact_faces
+from cagepose.model.shape_moments import shape_moments
+from exchange import machined_parts, machined_rims, machined_truths
 from exchange.cad_parts import Part
 from exchange.machined_case import CASES, Case, Reader, cases_of
 from exchange.path_oracle import Between, part_of
@@ -76,6 +79,21 @@ def check_exactly(name: str, reader: Reader) -> None:
 def test_step_ends_where_it_has_to(name, tmp_path):
     """As it is imported: as our primitives where it is a few of them, else as facets that stand for its surfaces."""
     check_exactly(name, Reader(tmp_path, "step"))
+
+
+@pytest.mark.usefixtures("in_this_process")
+@pytest.mark.parametrize("name", cases_of(machined_rims))
+def test_rounded_rims_are_tori(name, tmp_path):
+    """Read back from a file they are as Open CASCADE has them, to a thousand-millionth."""
+    case, reader, kinds = case_of(name), Reader(tmp_path, "step"), set[str]()
+    for part in (case.held, *case.cage):
+        if isinstance(part, Part):
+            (shape,) = reader(part)
+            assert exact_faces(shape).n_facets == 0
+            kinds |= exact_faces(shape).of_kinds.keys()
+            assert shape_moments(shape).volume_m3 == pytest.approx(1e-9 * moments_of(part.solid).Mass(), rel=1e-9)
+            assert reader.error <= 1e-9 * float(np.ptp(1e3 * shape.vertices_m))
+    assert "torus" in kinds
 
 
 @pytest.mark.usefixtures("in_this_process")

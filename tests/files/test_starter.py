@@ -45,7 +45,7 @@ def test_the_rules_of_the_paper_hold_the_starter_before_its_last_stop() -> None:
 SEVERAL_LOADS = {"forces", "moments", "springs", "follows", "to", "stiffness", "preload"}
 DRIVEN = {"bodies", "drive", "stop_at", "travel", "turn", "about", "through", "moment", "press", "along", "spring"}
 IMPORTED = {"left_out", "surfaces", "on", "plane", "point", "normal", "center", "axis", "slope", "hollow"}
-IMPORTED |= {"solid", "fillets"}
+IMPORTED |= {"solid", "fillets", "torus", "tube"}
 ROUND = {
     "shapes",
     "radius",

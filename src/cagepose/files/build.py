@@ -31,7 +31,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Adjustable, Scene
 from cagepose.model.scope import unknown_shapes
 from cagepose.model.shapes import Capsule, Cone, Convex, Cylinder, Disc, Shape, Sphere
-from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, Surface, three
+from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, TORUS, Surface, three
 from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT, Tolerances
 
 if TYPE_CHECKING:
@@ -192,6 +192,10 @@ class Builder:
         if model.sphere is not None:
             radius_m = (-1.0 if model.sphere.hollow else 1.0) * self.length(model.sphere.radius)
             return Surface(SPHERE, three(to_metres(model.sphere.center, self.unit)), (0.0, 0.0, 0.0), radius_m)
+        if model.torus is not None:
+            tube_m, core_m = self.length(model.torus.tube), self.length(model.torus.radius)
+            point, axis = three(to_metres(model.torus.center, self.unit)), three(model.torus.axis)
+            return Surface(TORUS, point, axis, -tube_m if model.torus.hollow else tube_m, core_m=core_m)
         side = model.cone or model.cylinder
         assert side is not None, "the schema lets no surface pass that has no kind"
         radius_m = (-1.0 if side.hollow else 1.0) * self.length(side.radius)

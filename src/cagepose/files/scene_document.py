@@ -28,7 +28,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.press import Press
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Shape
-from cagepose.model.surfaces import CONE, PLANE, SPHERE, Surface
+from cagepose.model.surfaces import CONE, PLANE, SPHERE, TORUS, Surface
 from cagepose.model.tolerances import GRAZING_BAND_DEFAULT_RAD, TOUCH_DEFAULT
 
 MOST_DECIMALS = 15
@@ -148,6 +148,8 @@ class SceneWriter(Measures):
         radius = self.length(abs(surface.radius_m))
         if surface.kind == SPHERE:
             return {"center": point, "radius": radius, **hollow}
+        if surface.kind == TORUS:
+            return {"center": point, "axis": axis, "radius": self.length(surface.core_m), "tube": radius, **hollow}
         slope = {"slope": plain_number(surface.slope)} if surface.kind == CONE else {}
         return {"point": point, "axis": axis, "radius": radius, **slope, **hollow}
 

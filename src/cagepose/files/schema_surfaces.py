@@ -1,4 +1,4 @@
-"""What triangles of facets stand for, in a scene file: planes, cylinders, cones and spheres."""
+"""What triangles of facets stand for, in a scene file: planes, cylinders, cones, spheres and tori."""
 
 from __future__ import annotations
 
@@ -37,7 +37,17 @@ class SphereSurfaceModel(Mapping):
     hollow: bool = Field(False, description="Whether the body is outside of it.", examples=[True])
 
 
-SURFACES = ("plane", "cylinder", "cone", "sphere")
+class TorusSurfaceModel(Mapping):
+    """A torus that triangles stand for, as the rounded rim of a rod."""
+
+    center: Vector = Field(description="Its centre.", examples=[[0, 0, 0]])
+    axis: Direction = Field(description="Unit vector along its axis.", examples=[[0, 0, 1]])
+    radius: Positive = Field(description="Radius of the circle in the middle of its tube.", examples=[3])
+    tube: Positive = Field(description="Radius of its tube.", examples=[1])
+    hollow: bool = Field(False, description="Whether the body is outside of its tube.", examples=[True])
+
+
+SURFACES = ("plane", "cylinder", "cone", "sphere", "torus")
 """Keys that say what a surface is."""
 
 
@@ -50,6 +60,7 @@ class SurfaceModel(Mapping):
     cylinder: CylinderSurfaceModel | None = Field(None, description="The round side of a cylinder.")
     cone: ConeSurfaceModel | None = Field(None, description="The side of a cone.")
     sphere: SphereSurfaceModel | None = Field(None, description="A ball.")
+    torus: TorusSurfaceModel | None = Field(None, description="A torus.")
 
     @model_validator(mode="after")
     def _one(self) -> SurfaceModel:

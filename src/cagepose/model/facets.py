@@ -35,8 +35,8 @@ class Facets(Shape):
     """A body within a closed surface of triangles; it need not be convex, or hang together.
 
     Triangles that lie in one plane are one face of it. It touches as it is, but for those triangles that are told to
-    stand for a plane, a cylinder, a cone or a sphere: there it touches as that does, and its edges are the curves in
-    which such surfaces meet.
+    stand for a plane, a cylinder, a cone, a sphere or a torus: there it touches as that does, and its edges are the
+    curves in which such surfaces meet.
 
     Attributes
     ----------

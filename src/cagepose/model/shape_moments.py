@@ -25,7 +25,7 @@ from cagepose.model.shapes import Convex, Rounded, Shape, Turned
 from cagepose.model.surface import LEAST_SEGMENTS, Mesh, mesh_in_own_frame
 from cagepose.model.volume import VolumeMoments
 
-MOST_HALVINGS, MOST_TRIANGLES = 3, 200_000
+MOST_HALVINGS, MOST_TRIANGLES = 3, 250_000
 """Of the sides of triangles that stand for what is round, as long as there are no more triangles then."""
 
 

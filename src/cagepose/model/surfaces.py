@@ -1,4 +1,4 @@
-"""The surfaces that triangles stand for: planes, cylinders, cones and spheres, as CAD has them."""
+"""The surfaces that triangles stand for: planes, cylinders, cones, spheres and tori, as CAD has them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from cagepose.errors import Key
 from cagepose.model.checks import FloatArray, ProblemList, unit_rows
 from cagepose.model.pose import Pose
 
-PLANE, CYLINDER, CONE, SPHERE = "plane", "cylinder", "cone", "sphere"
+PLANE, CYLINDER, CONE, SPHERE, TORUS = "plane", "cylinder", "cone", "sphere", "torus"
+KINDS = PLANE, CYLINDER, CONE, SPHERE, TORUS
 STEEPEST = 1e3
 """Slope of a cone: one that is flatter is a plane."""
 ROUNDING = 1e-14
@@ -27,15 +28,19 @@ class Surface:
     Attributes
     ----------
     kind
-        "plane", "cylinder", "cone" or "sphere".
+        "plane", "cylinder", "cone", "sphere" or "torus".
     point_m
         A point of the plane or of the axis, or the centre, (3,), metres.
     axis
         Unit vector: the outward normal of a plane, the direction of an axis, (3,). Of a sphere: zero.
     radius_m
-        Of a cylinder or a sphere; of a cone at its point, metres; below zero where the material is outside.
+        Of a cylinder or a sphere; of a cone at its point; of the tube of a torus, metres; below zero where the material
+        is outside.
     slope
         By how much the radius of a cone grows (in size) for a metre along its axis.
+    core_m
+        Radius of the circle in the middle of the tube of a torus, metres. If it is less than that of the tube, the
+        torus is what is on the circle's own side of the axis.
     """
 
     kind: str
@@ -43,6 +48,7 @@ class Surface:
     axis: tuple[float, float, float]
     radius_m: float = 0.0
     slope: float = 0.0
+    core_m: float = 0.0
 
     @property
     def is_round(self) -> bool:
@@ -60,6 +66,9 @@ class Surface:
             found: FloatArray = sense * np.linalg.norm(seen, axis=-1) - self.radius_m
             return found
         across = np.linalg.norm(seen - along[..., None] * np.array(self.axis), axis=-1)
+        if self.kind == TORUS:
+            above: FloatArray = sense * np.hypot(across - self.core_m, along) - self.radius_m
+            return above
         off: FloatArray = sense * (across - (abs(self.radius_m) + self.slope * along)) / math.hypot(1.0, self.slope)
         return off
 
@@ -71,6 +80,9 @@ class Surface:
         sense = math.copysign(1.0, self.radius_m)
         across = seen - (seen @ axis)[..., None] * axis
         out = unit_rows(np.where(np.linalg.norm(across, axis=-1, keepdims=True) > 0.0, across, 1.0))
+        if self.kind == TORUS:
+            around: FloatArray = sense * unit_rows(seen - self.core_m * out)
+            return around
         normals: FloatArray = sense * (out - self.slope * axis) / math.hypot(1.0, self.slope)
         return normals
 
@@ -83,7 +95,8 @@ class Surface:
         """Return it with lengths times a factor, and then moved."""
         point = pose.transform(factor * np.array(self.point_m))
         axis = pose.rotation @ np.array(self.axis)
-        return replace(self, point_m=three(point), axis=three(axis), radius_m=factor * self.radius_m)
+        sizes = factor * self.radius_m, factor * self.core_m
+        return replace(self, point_m=three(point), axis=three(axis), radius_m=sizes[0], core_m=sizes[1])
 
 
 def three(values: ArrayLike) -> tuple[float, float, float]:
@@ -105,12 +118,14 @@ def checked_surfaces(
         numbers = _numbers_of(surface)
         if numbers is None:
             problems.add((*where, index), "has no three numbers for its point and its axis, and one for its radius")
-        elif surface.kind not in (PLANE, CYLINDER, CONE, SPHERE):
-            problems.add((*where, index), f"is a {surface.kind!r}; give a plane, a cylinder, a cone or a sphere")
+        elif surface.kind not in KINDS:
+            problems.add((*where, index), f"is a {surface.kind!r}; give one of: {', '.join(KINDS)}")
         elif not np.isfinite(numbers).all() or abs(surface.slope) > STEEPEST:
             problems.add((*where, index), "has numbers that are not finite, or too large; correct them")
-        elif surface.kind in (CYLINDER, SPHERE) and surface.radius_m == 0.0:
+        elif surface.kind in (CYLINDER, SPHERE, TORUS) and surface.radius_m == 0.0:
             problems.add((*where, index), "has no radius; give one")
+        elif surface.kind == TORUS and surface.core_m <= 0.0:
+            problems.add((*where, index), "is a torus without a circle in its middle; give its radius, above zero")
         elif surface.kind != SPHERE and abs(math.hypot(*surface.axis) - 1.0) > 1e-9:
             problems.add((*where, index), "has an axis that is no unit vector; divide it by its length")
     given = np.asarray(surface_of if found else np.full(n_triangles, -1)).reshape(-1)
@@ -123,12 +138,13 @@ def checked_surfaces(
 
 
 def _numbers_of(surface: Surface) -> FloatArray | None:
-    """Return the eight numbers of a surface; None: it has others."""
+    """Return the nine numbers of a surface; None: it has others."""
     try:
-        found = np.array([*surface.point_m, *surface.axis, surface.radius_m, surface.slope], np.float64)
+        sizes = surface.radius_m, surface.slope, surface.core_m
+        found = np.array([*surface.point_m, *surface.axis, *sizes], np.float64)
     except (TypeError, ValueError):
         return None
-    return found if found.shape == (8,) else None
+    return found if found.shape == (9,) else None
 
 
 def check_on_surfaces(

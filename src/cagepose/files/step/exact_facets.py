@@ -30,8 +30,8 @@ class OnSurfaces(NamedTuple):
 
 
 def facets_on_surfaces(solid: dict[str, Any], name: str) -> OnSurfaces:
-    """Return a solid's triangles, which stand for its planes, cylinders, cones and spheres; other faces are flat
-    facets, and curves that are no lines or circles are chains of short arcs.
+    """Return a solid's triangles, which stand for its planes, cylinders, cones, spheres and tori; other faces are
+    flat facets, and curves that are no lines or circles are chains of short arcs.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def facets_on_surfaces(solid: dict[str, Any], name: str) -> OnSurfaces:
     notes = list[str]()
     if facets > 0.0:
         n_facets = counted((faces.n_facets, "flat facet", "flat facets"))
-        off = f"where it is no plane, cylinder, cone or ball, up to {facets:.2g} mm off"
+        off = f"where it is no plane, cylinder, cone, ball or outward torus, up to {facets:.2g} mm off"
         notes.append(f"{name!r} has {n_facets} {off}; exact: {faces.in_words or 'nothing'}")
     if chains > flat:
         notes.append(f"{name!r} has chains of short arcs where round faces cross, up to {chains:.2g} mm off")

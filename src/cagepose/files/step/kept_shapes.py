@@ -17,7 +17,7 @@ from cagepose.model.shapes import AnyShape
 
 MOST_BYTES = 64 * 1024 * 1024
 """A file that holds more was not kept by us."""
-VERSION = 2
+VERSION = 3
 """Of the way from a solid to shapes; what an older one made is made anew."""
 
 

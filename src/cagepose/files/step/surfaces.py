@@ -8,12 +8,14 @@ from typing import Any
 import numpy as np
 
 from cagepose.files.step.open_cascade import xyz
-from cagepose.files.step.tolerances import SAME_OF_SIZE
+from cagepose.files.step.tolerances import SAME_OF_SIZE, SAME_PLACE
 from cagepose.model.checks import FloatArray
-from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, Surface
+from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, TORUS, Surface
 
 ASLANT = 0.9
 """Cosine between axes that are asked no further whether they are one: to cross them takes ten times as long."""
+SAMPLES, FARTHEST_OF_SIZE = 9, 100.0
+"""Places of what is turned about an axis that tell whether it is an arc; and its radius, in its chord, at most."""
 
 
 def surface_of_face(face: Any, corners: FloatArray) -> Surface | None:
@@ -21,7 +23,14 @@ def surface_of_face(face: Any, corners: FloatArray) -> Surface | None:
     None: it is none of ours.
     """
     from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane, GeomAbs_Sphere
+    from OCP.GeomAbs import (
+        GeomAbs_Cone,
+        GeomAbs_Cylinder,
+        GeomAbs_Plane,
+        GeomAbs_Sphere,
+        GeomAbs_SurfaceOfRevolution,
+        GeomAbs_Torus,
+    )
 
     adaptor = BRepAdaptor_Surface(face)
     kind = adaptor.GetType()
@@ -36,9 +45,41 @@ def surface_of_face(face: Any, corners: FloatArray) -> Surface | None:
     elif kind == GeomAbs_Sphere:
         ball = adaptor.Sphere()
         found = Surface(SPHERE, xyz(ball.Location()), (0.0, 0.0, 0.0), ball.Radius())
+    elif kind == GeomAbs_Torus:
+        ring = adaptor.Torus()
+        place, axis = xyz(ring.Location()), xyz(ring.Axis().Direction())
+        found = Surface(TORUS, place, axis, ring.MinorRadius(), core_m=ring.MajorRadius())
     else:
-        return None
+        arc = _turned_arc(adaptor) if kind == GeomAbs_SurfaceOfRevolution else None
+        if arc is None:
+            return None
+        found = arc
     return _facing_out(found, corners)
+
+
+def _turned_arc(adaptor: Any) -> Surface | None:
+    """Return the torus of an arc that is turned about an axis, as Open CASCADE writes those that are wider than their
+    circle; None: what is turned is no arc.
+    """
+    axis = adaptor.AxeOfRevolution()
+    place, way = np.array(xyz(axis.Location())), np.array(xyz(axis.Direction()))
+    along = np.linspace(adaptor.FirstVParameter(), adaptor.LastVParameter(), SAMPLES)
+    seen = np.array([xyz(adaptor.BasisCurve().Value(at)) for at in along]) - place
+    heights = seen @ way
+    away = np.linalg.norm(seen - np.outer(heights, way), axis=1)
+    middle = float(heights.mean())
+    sums = np.stack([2.0 * away, 2.0 * (heights - middle), np.ones(SAMPLES)], axis=1)
+    core, rise, rest = np.linalg.lstsq(sums, away**2 + (heights - middle) ** 2, rcond=None)[0].tolist()
+    square = rest + core**2 + rise**2
+    if core <= 0.0 or square <= 0.0:
+        return None
+    radius = float(np.sqrt(square))
+    off = np.abs(np.hypot(away - core, heights - middle - rise) - radius).max()
+    if radius > FARTHEST_OF_SIZE * float(np.hypot(np.ptp(away), np.ptp(heights))) or off > SAME_PLACE * radius:
+        return None
+    x, y, z = (place + (middle + rise) * way).tolist()
+    u, v, w = way.tolist()
+    return Surface(TORUS, (x, y, z), (u, v, w), radius, core_m=core)
 
 
 def _cone(cone: Any, corners: FloatArray) -> Surface:
@@ -95,6 +136,9 @@ def _are_one(one: Surface, other: Surface, size: float) -> bool:
     if one.kind == PLANE:
         return along > 0.0 and abs(float(between @ axis)) <= slack
     height = float(between @ axis)
+    if one.kind == TORUS:
+        sizes = max(abs(one.radius_m - other.radius_m), abs(one.core_m - other.core_m))
+        return max(float(np.linalg.norm(between)), sizes) <= slack
     off = float(np.linalg.norm(between - height * axis))
     slope = other.slope if along > 0.0 else -other.slope
     radius = abs(one.radius_m) + one.slope * height

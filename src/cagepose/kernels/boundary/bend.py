@@ -223,7 +223,7 @@ def curvatures(a: PlacedBoundary, i: int, b: PlacedBoundary, j: int, met: Meetin
     core = minus(met.place, scaled(normal, one.radius))
     if other.kind == FACE:
         return Curvatures(NOTHING, NOTHING, finite(side_at(a, i, normal, core, is_around), normal))
-    side = side_at(b, j, back, there, is_around)
+    side = side_at(b, j, back, there, is_around and one.kind != CIRCLE)  # of two circles one touches by itself
     if one.kind == FACE:
         parallel = added(finite(side, normal), across(normal, met.gap))
         return Curvatures(NOTHING, across(normal, 1.0), parallel)

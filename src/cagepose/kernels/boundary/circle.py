@@ -42,7 +42,12 @@ def is_on_arc(circle: Feature, angle: float, slack_m: float) -> bool:
 
 @kernel
 def beyond_circle(circle: Feature, outward: Vector, normal: Vector) -> float:
-    """Return how far a direction across the tangent is beyond the outward normals of a circle at a place, a sine."""
+    """Return how far a direction across the tangent is beyond the outward normals of a circle at a place, a sine; -1:
+    all are.
+    """
     out, along = dot(outward, normal), dot(vector_from(circle.direction), normal)
     below = math.sin(circle.low) * out - math.cos(circle.low) * along
-    return max(below, math.cos(circle.high) * along - math.sin(circle.high) * out)
+    above = math.cos(circle.high) * along - math.sin(circle.high) * out
+    if circle.high - circle.low <= math.pi:
+        return max(below, above)
+    return min(below, above) if circle.high - circle.low < WHOLE_TURN else -1.0

@@ -20,7 +20,7 @@ import math
 from cagepose.kernels.algebra.motion import Motion, velocity_at
 from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, norm, scaled
-from cagepose.kernels.boundary.circle_meeting import is_sharp
+from cagepose.kernels.boundary.circle_meeting import crosses_edge, is_sharp
 from cagepose.kernels.boundary.curve_beside import (
     Beside,
     Piece,
@@ -164,6 +164,7 @@ def clear_ahead(
     curve, surface, sense = (one, other, 1.0) if is_own else (other, one, -1.0)
     of_circle = curve.kind == CIRCLE
     sharp = of_circle and is_sharp(curve, surface)
+    crosses = of_circle and crosses_edge(curve, surface)
     of_other = of_circle and surface.kind == CIRCLE and not is_own
     facing = facing_of(surface, scaled(normal, -sense), sharp)
     start, span, n_first = -slack_m, curve.length + 2.0 * slack_m, 1
@@ -189,7 +190,7 @@ def clear_ahead(
             depth = kept_depth(kept, n_kept, of_other, first + 0.5 * step, 0.5 * step)
         elif n_kept > 0:  # what has one place
             depth = kept[0].depth_m
-        if sharp and depth > 0.0:  # which are apart on either side of each other: the distance does not tell how deep
+        if crosses and depth > 0.0:  # which are apart on either side of each other: the distance does not tell how deep
             depth = math.inf
         divides = depth < 0.0 and level < KEPT_DEEPEST
         if not divides and depth < math.inf:

@@ -17,8 +17,9 @@ from cagepose.kernels.algebra.vector import dot, minus, norm, plus, scaled, vect
 from cagepose.kernels.boundary.along_motion import BEHIND, LEAST_STEP, between_segments, gone_on
 from cagepose.kernels.boundary.circle import circle_of, outward_at
 from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE, clear_ahead
+from cagepose.kernels.boundary.circle_meeting import meet_all_around, write_place_on
 from cagepose.kernels.boundary.closing import closing_of, surely_clear
-from cagepose.kernels.boundary.features import CIRCLE, Feature, PlacedBoundary
+from cagepose.kernels.boundary.features import Feature, PlacedBoundary
 from cagepose.kernels.boundary.first_touch import place_after
 from cagepose.kernels.boundary.hollow_end import reach_in_hollow
 from cagepose.kernels.boundary.meetings import PLACES_AROUND, find_circle_places, find_places_near, meeting_at
@@ -30,7 +31,6 @@ from cagepose.kernels.circles.places import (
     Place,
     on_circle,
     within_turn,
-    write_place,
 )
 from cagepose.kernels.native.kernel import kernel
 
@@ -77,7 +77,7 @@ def place_near(one: Feature, other: Feature, angle: float, farthest: float, touc
     n_places = find_places_near(one, other, angle, touch_m, places)
     nearest, least = -1, farthest
     if n_places == WHOLE:
-        write_place(places[0], angle, 0.0, 0, True)
+        write_place_on(one, other, angle, places[0])
         return 0
     for k in range(n_places):
         away = abs(within_turn(places[k].angle - angle))
@@ -192,7 +192,7 @@ def first_touch_of_curved(
         n_places = find_circle_places(one, other, touch_m, places)
         is_around = n_places == WHOLE
         least, is_past, nearest, facing, turned = math.inf, False, 0, (0.0, 0.0, 0.0), 0.0
-        if is_around and one.kind == CIRCLE and other.kind == CIRCLE:
+        if is_around and not meet_all_around(one, other):
             least, n_places = circles_apart(one, other), 0
             is_past, is_around = least <= touch_m, False
         has_kept = n_kept > 0

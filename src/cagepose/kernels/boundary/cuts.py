@@ -7,14 +7,27 @@ import math
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.chart import beyond_trim
-from cagepose.kernels.boundary.features import FACE, VERTEX, Boundary
+from cagepose.kernels.boundary.circle import circle_of
+from cagepose.kernels.boundary.circle_meeting import round_of
+from cagepose.kernels.boundary.features import CIRCLE, FACE, VERTEX, Boundary, Feature
 from cagepose.kernels.boundary.reach import beyond_borders
 from cagepose.kernels.boundary.strands import Strand, circle_under, on_strand
-from cagepose.kernels.boundary.surfaces import beyond_cone, crossing, has_surface, height_over, normal_of_face
+from cagepose.kernels.boundary.surfaces import (
+    beyond_cone,
+    crossing,
+    has_surface,
+    height_over,
+    most_crossings,
+    normal_of_face,
+)
 from cagepose.kernels.boundary.tree import FACES, Node
+from cagepose.kernels.boundary.tube import beside_tube, beyond_tube
 from cagepose.kernels.boundary.within import root_has_surfaces
+from cagepose.kernels.circles.beside_circle import circle_equation, is_whole_equally_near
 from cagepose.kernels.circles.beside_round import Round, common_with_round, places_by_round
+from cagepose.kernels.circles.equation import seen_along
 from cagepose.kernels.circles.places import Circle, Place, on_circle
+from cagepose.kernels.circles.search import search
 from cagepose.kernels.native.kernel import kernel
 
 MOST_CUTS = 1024
@@ -54,7 +67,7 @@ def find_cuts(
                     continue
                 if root == FACES and _is_on_one_side(strand, solid, i, slack_m):
                     continue
-                for which in range(1 if root == FACES else 2):
+                for which in range(most_crossings(solid.features[i])):
                     met = crossing(solid, i, strand.point, strand.way, strand.end, slack_m, which)
                     if met.is_one and met.beyond <= slack_m:
                         meets = True
@@ -127,7 +140,7 @@ def _cut_arc(
     """Note where an arc crosses a surface."""
     feature, circle = solid.features[i], circle_under(strand)
     if feature.kind != FACE and feature.kind != VERTEX:
-        return _cut_by_side(strand, solid, i, slack_m, places, cuts, n_cuts)
+        return _cut_by_round(strand, solid, i, slack_m, places, cuts, n_cuts)
     seen = minus(circle.centre, vector_from(feature.point))
     if feature.kind == FACE:
         way = vector_from(feature.direction)
@@ -158,36 +171,62 @@ def _beyond_at(solid: Boundary, i: int, there: Vector) -> float:
 
 
 @kernel
-def _cut_by_side(
+def _cut_by_round(
     strand: Strand, solid: Boundary, i: int, slack_m: float, places: Rows[Place], cuts: FloatArray, n_cuts: int
 ) -> int:
-    """Note where an arc crosses a round side: between places of a stationary distance it crosses once or not."""
+    """Note where an arc crosses a round side or a tube: between places of a stationary distance once, or not."""
     feature, circle = solid.features[i], circle_under(strand)
-    side = Round(vector_from(feature.point), vector_from(feature.direction), feature.radius, feature.taper)
-    if _is_far(circle, side, feature.length, slack_m):
-        return n_cuts
-    n_places = places_by_round(circle, side, 0.5 * slack_m, places)
+    if feature.kind == CIRCLE:
+        n_places = _places_by_tube(circle, feature, 0.5 * slack_m, places)
+    else:
+        side = round_of(feature)
+        if _is_far(circle, side, feature.length, slack_m):
+            return n_cuts
+        n_places = places_by_round(circle, side, 0.5 * slack_m, places)
     for k in range(n_places):
         begin, end = places[k].angle, begin_of_next(places, n_places, k)
-        low, high = _height(circle, side, begin), _height(circle, side, end)
+        low, high = _height(circle, feature, begin), _height(circle, feature, end)
         if low * high >= 0.0:
             continue
         for _ in range(HALVINGS):
             angle = 0.5 * (begin + end)
-            height = _height(circle, side, angle)
+            height = _height(circle, feature, angle)
             if (height < 0.0) == (low < 0.0):
                 begin = angle
             else:
                 end = angle
-        met = common_with_round(circle, side, 0.5 * (begin + end))
-        normal = scaled(met.normal, -1.0)
-        foot = dot(side.direction, minus(met.point, side.point)) - side.taper * side.radius
-        square = 1.0 - side.taper * side.taper
-        beyond = max(-foot, foot - feature.length * square, beyond_trim(solid, i, normal, foot / square))
-        beyond = max(beyond, abs(side.radius) * beyond_cone(solid, i, normal))
-        if beyond <= slack_m:
+        if _beyond_round(circle, solid, i, 0.5 * (begin + end)) <= slack_m:
             n_cuts = _noted(strand, begin, cuts, n_cuts)
     return n_cuts
+
+
+@kernel
+def _places_by_tube(circle: Circle, tube: Feature, flat_m: float, places: Rows[Place]) -> int:
+    """Write the places of a circle where its distance from the one within a tube is stationary; none if the tube is
+    farther away, or all of the circle is equally far.
+    """
+    if abs(beside_tube(tube, circle.centre).gap) > circle.radius:
+        return 0
+    core = circle_of(tube)
+    near = circle_equation(circle, core, seen_along(circle, core.centre, core.axis), True)
+    if is_whole_equally_near(near, flat_m / circle.radius):
+        return 0
+    return search(near, True, 0, places)
+
+
+@kernel
+def _beyond_round(circle: Circle, solid: Boundary, i: int, angle: float) -> float:
+    """Return how far a place of a circle on a round side or a tube is beyond where that ends."""
+    feature = solid.features[i]
+    if feature.kind == CIRCLE:
+        return beyond_tube(feature, beside_tube(feature, on_circle(circle, angle).point))
+    side = round_of(feature)
+    met = common_with_round(circle, side, angle)
+    normal = scaled(met.normal, -1.0)
+    foot = dot(side.direction, minus(met.point, side.point)) - side.taper * side.radius
+    square = 1.0 - side.taper * side.taper
+    beyond = max(-foot, foot - feature.length * square, beyond_trim(solid, i, normal, foot / square))
+    return max(beyond, abs(side.radius) * beyond_cone(solid, i, normal))
 
 
 @kernel
@@ -214,6 +253,8 @@ def begin_of_next(places: Rows[Place], n_places: int, k: int) -> float:
 
 
 @kernel
-def _height(circle: Circle, side: Round, angle: float) -> float:
-    """Return how far a place of a circle is above a round side."""
-    return common_with_round(circle, side, angle).gap
+def _height(circle: Circle, feature: Feature, angle: float) -> float:
+    """Return how far a place of a circle is above a round side or a tube."""
+    if feature.kind == CIRCLE:
+        return beside_tube(feature, on_circle(circle, angle).point).gap
+    return common_with_round(circle, round_of(feature), angle).gap

@@ -15,7 +15,7 @@ import numpy as np
 from cagepose.kernels.algebra.record import FloatArray, IntArray, Rows, empty_rows
 from cagepose.kernels.algebra.vector import Vector, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.circle import circle_of, is_on_arc
-from cagepose.kernels.boundary.circle_meeting import common_at, is_core
+from cagepose.kernels.boundary.circle_meeting import common_at, is_core, write_place_on
 from cagepose.kernels.boundary.extents import extent_of, surely_apart
 from cagepose.kernels.boundary.features import (
     CIRCLE,
@@ -33,14 +33,15 @@ from cagepose.kernels.boundary.features import (
 )
 from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_at, held_at
 from cagepose.kernels.boundary.meeting import between_cores, both_reach, meeting, seated
-from cagepose.kernels.boundary.meetings import find_circle_places, slack_of
+from cagepose.kernels.boundary.meetings import EQUALLY_FAR, find_circle_places, slack_of
 from cagepose.kernels.boundary.met import CENTRED, Meeting, swapped
-from cagepose.kernels.boundary.surfaces import crossing, has_surface
+from cagepose.kernels.boundary.surfaces import crossing, has_surface, most_crossings
 from cagepose.kernels.boundary.tapered import nearest_on_axis
 from cagepose.kernels.boundary.touching import MOST_PAIRS, MOST_PLACES
 from cagepose.kernels.boundary.tree import EDGES, FACES, SAFE, VERTICES, Node, boxes_apart
 from cagepose.kernels.boundary.within import root_has_surfaces
-from cagepose.kernels.circles.places import SADDLE, WHOLE, Place, angle_toward, on_circle, write_place
+from cagepose.kernels.circles.beside_circle import places_by_circle
+from cagepose.kernels.circles.places import SADDLE, WHOLE, Place
 from cagepose.kernels.native.interrupt import heed_interrupt
 from cagepose.kernels.native.kernel import entry, kernel
 
@@ -195,25 +196,21 @@ def add_gaps(
         add_gap(geometry, held, i, cage, j, straight_gap(held, i, cage, j), narrowest, work)
         return
     circle = one if one.kind == CIRCLE else other
-    n_places = find_circle_places(one, other, geometry.touch_m, work.places)
+    if one.kind == CIRCLE and other.kind == CIRCLE:  # in a hole, the far side of its mouth counts, too
+        flat_m = EQUALLY_FAR * geometry.touch_m
+        n_places = places_by_circle(circle_of(one), circle_of(other), flat_m, work.places)
+    else:
+        n_places = find_circle_places(one, other, geometry.touch_m, work.places)
     if n_places == WHOLE:
         for k in range(PLACES_OF_WHOLE):
             angle = circle.start + circle.width * k / PLACES_OF_WHOLE
-            write_place(work.places[k], angle, angle_beside(circle, angle, other), 0, True)
+            write_place_on(one, other, angle, work.places[k])
         n_places = PLACES_OF_WHOLE
     for k in range(n_places):
         place = work.places[k]
         if place.kind != SADDLE and is_on_arc(circle, place.angle, SLACK_OF_TOUCH * geometry.touch_m):
             met = circle_gap(held, i, cage, j, place)
             add_gap(geometry, held, i, cage, j, met, narrowest, work)
-
-
-@kernel
-def angle_beside(circle: Feature, angle: float, other: Feature) -> float:
-    """Return the angle of the place of another circle that is nearest to a place of one; of another feature, zero."""
-    if other.kind != CIRCLE:
-        return 0.0
-    return angle_toward(circle_of(other), on_circle(circle_of(circle), angle).point)
 
 
 @kernel
@@ -329,7 +326,7 @@ def is_between(body: PlacedBoundary, met: Meeting, touch_m: float, waiting: IntA
             for i in range(node.first, node.last):
                 if not has_surface(own.features[i]):
                     continue
-                for which in range(2):
+                for which in range(most_crossings(own.features[i])):
                     found = crossing(own, i, start, way, met.gap, 0.0, which)
                     if found.is_one and touch_m < found.along < met.gap - touch_m and found.beyond < -touch_m:
                         return True

@@ -8,12 +8,12 @@ from cagepose.kernels.algebra.record import Rows
 from cagepose.kernels.algebra.vector import cross, norm, vector_from
 from cagepose.kernels.boundary.circle_ahead import SAME_ANGLE
 from cagepose.kernels.boundary.circle_first import place_near
-from cagepose.kernels.boundary.circle_meeting import is_sharp
+from cagepose.kernels.boundary.circle_meeting import crosses_edge, write_place_on
 from cagepose.kernels.boundary.features import CIRCLE, LINE, VERTEX, Feature, PlacedBoundary
 from cagepose.kernels.boundary.meeting import meeting, seated
 from cagepose.kernels.boundary.meetings import meeting_at
 from cagepose.kernels.boundary.met import PARALLEL, Meeting, apart, swapped
-from cagepose.kernels.circles.places import Place, write_place
+from cagepose.kernels.circles.places import Place
 from cagepose.kernels.native.kernel import kernel
 
 
@@ -42,9 +42,9 @@ def meeting_kept(
             return swapped(seated(other, one, angle))
         return meeting(held, i, cage, j)
     if is_fixed:
-        write_place(places[0], angle, 0.0, 0, True)
+        write_place_on(one, other, angle, places[0])
         return meeting_at(held, i, cage, j, places[0])
-    is_crossing = is_sharp(one, other) if one.kind == CIRCLE else is_sharp(other, one)
+    is_crossing = crosses_edge(one, other) if one.kind == CIRCLE else crosses_edge(other, one)
     at = place_near(one, other, angle, SAME_ANGLE if is_crossing else math.pi, touch_m, places)
     return meeting_at(held, i, cage, j, places[at]) if at >= 0 else apart()
 
@@ -56,4 +56,4 @@ def crossed(one: Feature, other: Feature) -> bool:
     """
     if one.kind == LINE and other.kind == LINE:
         return norm(cross(vector_from(one.direction), vector_from(other.direction))) < PARALLEL
-    return (one.kind == CIRCLE and is_sharp(one, other)) or (other.kind == CIRCLE and is_sharp(other, one))
+    return (one.kind == CIRCLE and crosses_edge(one, other)) or (other.kind == CIRCLE and crosses_edge(other, one))

@@ -8,7 +8,13 @@ from cagepose.kernels.algebra.record import FloatArray, Rows
 from cagepose.kernels.algebra.vector import dot, minus, plus, row, scaled, times, vector_from
 from cagepose.kernels.boundary.chart import is_trimmed
 from cagepose.kernels.boundary.circle import WHOLE_TURN, circle_of, is_on_arc
-from cagepose.kernels.boundary.circle_meeting import circle_meeting, find_places, round_of
+from cagepose.kernels.boundary.circle_meeting import (
+    circle_meeting,
+    find_places,
+    meet_all_around,
+    round_of,
+    write_place_on,
+)
 from cagepose.kernels.boundary.extents import extent_of, surely_apart
 from cagepose.kernels.boundary.far_sides import drop_far_sides
 from cagepose.kernels.boundary.features import (
@@ -34,6 +40,7 @@ from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_P
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.boundary.twins import append_meeting
 from cagepose.kernels.boundary.within import is_within, nearest_surface
+from cagepose.kernels.circles.beside_circle import place_by_circle_near
 from cagepose.kernels.circles.beside_round import place_by_round_near
 from cagepose.kernels.circles.places import GREATEST, SADDLE, WHOLE, Place, write_place
 from cagepose.kernels.native.kernel import kernel
@@ -235,9 +242,9 @@ def find_circle_places(one: Feature, other: Feature, touch_m: float, places: Row
         return 1
     circle, beside = (one, other) if one.kind == CIRCLE else (other, one)
     n_places = find_places(circle, beside, (FLAT if beside.kind == FACE else EQUALLY_FAR) * touch_m, places)
-    if n_places == WHOLE and beside.kind != CIRCLE:
+    if n_places == WHOLE and meet_all_around(one, other):
         for k in range(PLACES_AROUND):
-            write_place(places[k], math.pi * (2 * k + 1) / PLACES_AROUND, 0.0, 0, True)
+            write_place_on(one, other, math.pi * (2 * k + 1) / PLACES_AROUND, places[k])
     return n_places
 
 
@@ -245,6 +252,8 @@ def find_circle_places(one: Feature, other: Feature, touch_m: float, places: Row
 def find_places_near(one: Feature, other: Feature, angle: float, touch_m: float, places: Rows[Place]) -> int:
     """As `find_circle_places`, but the place that is nearest to an angle alone, if that is told without the others."""
     circle, beside = (one, other) if one.kind == CIRCLE else (other, one)
+    if one.kind == CIRCLE and other.kind == CIRCLE:
+        return place_by_circle_near(circle_of(one), circle_of(other), angle, EQUALLY_FAR * touch_m, places)
     if circle.kind != CIRCLE or beside.kind != LINE:
         return find_circle_places(one, other, touch_m, places)
     return place_by_round_near(circle_of(circle), round_of(beside), angle, EQUALLY_FAR * touch_m, places)
@@ -259,7 +268,7 @@ def meet_circle(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touc
     if n_places == WHOLE:
         if one.kind == FACE or other.kind == FACE:
             meet_flat(held, i, cage, j, touch_m, found)
-        elif one.kind != other.kind:
+        elif meet_all_around(one, other):
             meet_around(held, i, cage, j, touch_m, found)
         return
     for k in range(n_places):
@@ -275,6 +284,8 @@ def meet_around(held: PlacedBoundary, i: int, cage: PlacedBoundary, j: int, touc
     """Append the meetings of a circle and of what all of it lies on; of a side with borders, those of some places."""
     circle = held.features[i] if held.features[i].kind == CIRCLE else cage.features[j]
     ends_anywhere = is_trimmed(held.own, i) or is_trimmed(cage.own, j)
+    if cage.features[j].kind == CIRCLE and cage.features[j].width < WHOLE_TURN:  # of two circles either may end
+        ends_anywhere = ends_anywhere or held.features[i].kind == CIRCLE
     if circle.width < WHOLE_TURN and not ends_anywhere:
         append_arc(held, i, cage, j, Arc(circle.start, circle.start + circle.width), circle.length, touch_m, found)
         return
@@ -290,7 +301,7 @@ def append_along(
 ) -> None:
     """Append the meeting of a circle at one of its places, if it touches there."""
     place = found.places[0]
-    write_place(place, along.angle, 0.0, 0, True)
+    write_place_on(held.features[i], cage.features[j], along.angle, place)
     there = Along(place.angle, along.before, along.after)
     append_touching(held, i, cage, j, there, meeting_at(held, i, cage, j, place), touch_m, found)
 

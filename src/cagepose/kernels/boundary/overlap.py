@@ -3,7 +3,8 @@
 Each answer yes has a witness: a place on the surface of one body, or in it, that is deeper than the touch tolerance in
 the other. Witnesses are looked for where two solids that overlap must have one.
 
-- A curve in which the surfaces cross meets a strand of one of them, i.e. a sharp edge or a generator of a round side.
+- A curve in which the surfaces cross meets a strand of one of them, i.e. a sharp edge, a generator of a round side, or
+  a circle across a tube.
   Cuts by the other surface, borders included, divide a strand into spans; the middle of each is asked. If a span lies
   in the surface, as where faces are flush, a place beside it is asked that is in its own body.
 - Or the curve goes around a dent in which no strand is: there two smooth surfaces have a common normal.
@@ -128,7 +129,7 @@ def find_overlap(held: PlacedBoundary, cage: PlacedBoundary, touch_m: float, wor
         best = probe(one, work.held.first, asks_all, touch_m, best, work)
         best = swapped(probe(other, work.cage.first, asks_all, touch_m, swapped(best), work))
         if not asks_all:
-            dent = find_dents(held, cage, touch_m, best.depth_m, work.pairs, work.waiting)
+            dent = find_dents(held, cage, touch_m, best.depth_m, work.pairs, work.waiting, work.places)
             if dent.feature >= 0:
                 best = Overlap(dent.feature, dent.cage_feature, dent.depth_m)
         if best.depth_m == 0.0:

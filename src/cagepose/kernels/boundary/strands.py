@@ -1,4 +1,4 @@
-"""Curves on the surface of a body: its sharp edges, and one generator of each round side.
+"""Curves on the surface of a body: its sharp edges, one generator of each round side, and one circle across each tube.
 
 Where the surfaces of two solids cross in a curve, it crosses a strand of one of them, or lies within a smooth dent.
 """
@@ -10,14 +10,16 @@ from typing import NamedTuple
 
 from cagepose.kernels.algebra.vector import Matrix, Vector, cross, dot, minus, norm, plus, scaled, times, vector_from
 from cagepose.kernels.boundary.chart import is_trimmed
-from cagepose.kernels.boundary.circle import WHOLE_TURN
-from cagepose.kernels.boundary.features import CIRCLE, Boundary
+from cagepose.kernels.boundary.circle import WHOLE_TURN, circle_of
+from cagepose.kernels.boundary.features import CIRCLE, Boundary, Feature
 from cagepose.kernels.boundary.surfaces import out_of_axis, slant_of_side
 from cagepose.kernels.circles.places import Circle, on_circle
 from cagepose.kernels.native.kernel import kernel
 
 GENERATOR = 0.7548
 """Turn of a generator from the side's own direction across its axis, as cosine: little of ordinary parts lies there."""
+ACROSS_TUBE = 0.3774
+"""Of the way along a circle: there the one leads across the tube around it."""
 
 
 class Frame(NamedTuple):
@@ -33,7 +35,7 @@ class Strand(NamedTuple):
     Attributes
     ----------
     is_arc, is_closed, is_generator
-        Whether it is one; closed: a whole circle.
+        Whether it is one; closed: a whole circle; a generator: of a round side, or what leads across a tube.
     point, way, toward
         Of a line its start and its direction; of an arc centre, axis, and what angles are measured from.
     radius
@@ -71,6 +73,8 @@ def seen_in(frame: Frame, place: Vector) -> Vector:
 def strand_of(own: Boundary, i: int, frame: Frame) -> Strand:
     """Return the strand of a line or a circle, in another frame."""
     feature = own.features[i]
+    if feature.kind == CIRCLE and feature.radius > 0.0:
+        return across_tube(feature, frame)
     if feature.kind == CIRCLE:
         half, middle = 0.5 * (feature.high - feature.low), 0.5 * (feature.high + feature.low)
         return Strand(
@@ -111,6 +115,27 @@ def strand_of(own: Boundary, i: int, frame: Frame) -> Strand:
         times(frame.rotation, into),
         0.0,
         sine,
+    )
+
+
+@kernel
+def across_tube(feature: Feature, frame: Frame) -> Strand:
+    """Return an arc across the tube around a circle, from its lowest to its highest normal, in another frame."""
+    core = on_circle(circle_of(feature), feature.start + ACROSS_TUBE * feature.width)
+    way = cross(core.outward, vector_from(feature.direction))
+    return Strand(
+        True,
+        feature.high - feature.low >= WHOLE_TURN,
+        True,
+        seen_in(frame, core.point),
+        times(frame.rotation, way),
+        times(frame.rotation, core.outward),
+        feature.radius,
+        feature.low,
+        feature.high,
+        (0.0, 0.0, 0.0),
+        0.0,
+        1.0,
     )
 
 

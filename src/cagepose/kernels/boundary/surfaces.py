@@ -1,6 +1,7 @@
 """The surface of a feature in the frame of its body: how far a place is from it, and where a straight line crosses it.
 
-A face, the round side of a line and the ball around a vertex have one; a sharp vertex, line or circle has none.
+A face, the round side of a line, the ball around a vertex and the tube around a circle have one; a sharp vertex, line
+or circle has none.
 """
 
 from __future__ import annotations
@@ -12,6 +13,13 @@ from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, scal
 from cagepose.kernels.boundary.chart import beyond_trim, is_trimmed
 from cagepose.kernels.boundary.features import CIRCLE, FACE, VERTEX, Boundary, Feature
 from cagepose.kernels.boundary.reach import beyond_borders, beyond_bound
+from cagepose.kernels.boundary.tube import (
+    MOST_CROSSINGS,
+    beside_tube,
+    beyond_tube,
+    distance_from_tube,
+    tube_crossing,
+)
 from cagepose.kernels.native.kernel import kernel
 
 PARALLEL = 1e-14
@@ -46,7 +54,15 @@ NO_CROSSING = Crossing(False, 0.0, 0.0, 0.0)
 
 @kernel
 def has_surface(feature: Feature) -> bool:
-    return feature.kind == FACE or (feature.kind != CIRCLE and feature.radius != 0.0)
+    return feature.kind == FACE or feature.radius != 0.0
+
+
+@kernel
+def most_crossings(feature: Feature) -> int:
+    """Return how often a straight line crosses a surface at most."""
+    if feature.kind == FACE:
+        return 1
+    return MOST_CROSSINGS if feature.kind == CIRCLE else 2
 
 
 @kernel
@@ -97,6 +113,8 @@ def distance_from(own: Boundary, i: int, place: Vector, within_m: float) -> floa
     exact if it is farther than a length.
     """
     feature = own.features[i]
+    if feature.kind == CIRCLE:
+        return distance_from_tube(feature, place)
     seen = minus(place, vector_from(feature.point))
     if feature.kind == FACE:
         normal = vector_from(feature.direction)
@@ -129,10 +147,13 @@ def distance_from(own: Boundary, i: int, place: Vector, within_m: float) -> floa
 
 @kernel
 def crossing(own: Boundary, i: int, start: Vector, way: Vector, end: float, slack_m: float, which: int) -> Crossing:
-    """Return where a straight line from a place along a unit vector crosses a surface for the first or the second time,
-    ``which`` 0 or 1, in no order: up to a length from there, or where it is less than a slack above the surface.
+    """Return where a straight line from a place along a unit vector crosses a surface, up to a length from there, or
+    where it is less than a slack above the surface. ``which`` counts the crossings from zero on, in no order, see
+    `most_crossings`.
     """
     feature = own.features[i]
+    if feature.kind == CIRCLE:
+        return _through_tube(feature, start, way, end, slack_m, which)
     seen = minus(start, vector_from(feature.point))
     if feature.kind == FACE:
         normal = vector_from(feature.direction)
@@ -179,6 +200,18 @@ def _through_ball(own: Boundary, i: int, seen: Vector, way: Vector, end: float, 
     if _is_off(along, slope, end, slack_m):
         return NO_CROSSING
     return Crossing(True, along, radius * beyond_cone(own, i, normal), slope)
+
+
+@kernel
+def _through_tube(circle: Feature, start: Vector, way: Vector, end: float, slack_m: float, which: int) -> Crossing:
+    is_one, along = tube_crossing(circle, start, way, which)
+    if not is_one:
+        return NO_CROSSING
+    at = beside_tube(circle, plus(start, scaled(way, along)))
+    slope = dot(way, at.normal)
+    if _is_off(along, slope, end, slack_m):
+        return NO_CROSSING
+    return Crossing(True, along, beyond_tube(circle, at), slope)
 
 
 @kernel

@@ -12,7 +12,14 @@ from typing import NamedTuple
 from cagepose.kernels.algebra.record import IntArray
 from cagepose.kernels.algebra.vector import Vector, dot, vector_from
 from cagepose.kernels.boundary.features import Boundary
-from cagepose.kernels.boundary.surfaces import crossing, distance_from, has_surface, height_over, normal_of_face
+from cagepose.kernels.boundary.surfaces import (
+    crossing,
+    distance_from,
+    has_surface,
+    height_over,
+    most_crossings,
+    normal_of_face,
+)
 from cagepose.kernels.boundary.tree import FACES, Node
 from cagepose.kernels.native.kernel import kernel
 
@@ -128,7 +135,7 @@ def winding_along(own: Boundary, start: Vector, way: Vector, slack_m: float, wai
                     continue
                 if not has_surface(own.features[i]):
                     continue
-                for which in range(1 if root == FACES else 2):
+                for which in range(most_crossings(own.features[i])):
                     met = crossing(own, i, start, way, math.inf, 0.0, which)
                     if not met.is_one or met.beyond > slack_m:
                         continue

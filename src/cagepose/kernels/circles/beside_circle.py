@@ -34,10 +34,14 @@ from cagepose.kernels.circles.places import (
     angle_toward,
     common_of_sharp,
     on_circle,
+    within_turn,
     write_place,
 )
-from cagepose.kernels.circles.search import search
+from cagepose.kernels.circles.search import find_least_near, search
 from cagepose.kernels.native.kernel import kernel
+
+CLOSE_BY = 0.1
+"""Radians: a place that is nearer to where another one was is the nearest one to it."""
 
 
 @kernel
@@ -75,17 +79,50 @@ def places_by_circle(circle: Circle, other: Circle, flat_m: float, places: Rows[
     """Write all pairs of places where two circles have a common normal, at most eight, and return their number;
     `WHOLE`: all of the smaller one is equally far from the larger one, to a length.
     """
+    n_near = near_places_by_circle(circle, other, flat_m, places)
+    if n_near == WHOLE:
+        return WHOLE
     is_small = circle.radius <= other.radius
     small, large = (circle, other) if is_small else (other, circle)
-    ellipse = seen_along(small, large.centre, large.axis)
-    near = circle_equation(small, large, ellipse, True)
+    far = circle_equation(small, large, seen_along(small, large.centre, large.axis), False)
+    n_places = search(far, False, n_near, places)
+    for k in range(n_near, n_places):
+        complete(small, large, is_small, places[k])
+    return n_places
+
+
+@kernel
+def near_places_by_circle(circle: Circle, other: Circle, flat_m: float, places: Rows[Place]) -> int:
+    """As `places_by_circle`, but those on the near side of the larger circle alone: on its far side no distance is the
+    least one nearby.
+    """
+    is_small = circle.radius <= other.radius
+    small, large = (circle, other) if is_small else (other, circle)
+    near = circle_equation(small, large, seen_along(small, large.centre, large.axis), True)
     if is_whole_equally_near(near, flat_m / small.radius):
         return WHOLE
-    n_near = search(near, True, 0, places)
-    n_places = search(circle_equation(small, large, ellipse, False), False, n_near, places)
+    n_places = search(near, True, 0, places)
     for k in range(n_places):
         complete(small, large, is_small, places[k])
     return n_places
+
+
+@kernel
+def place_by_circle_near(circle: Circle, other: Circle, angle: float, flat_m: float, places: Rows[Place]) -> int:
+    """As `near_places_by_circle`, but of the places where the distance is least the one that is nearest to an angle of
+    the first circle, if that is told without the others.
+    """
+    is_small = circle.radius <= other.radius
+    small, large = (circle, other) if is_small else (other, circle)
+    near = circle_equation(small, large, seen_along(small, large.centre, large.axis), True)
+    if is_whole_equally_near(near, flat_m / small.radius):
+        return WHOLE
+    start = angle if is_small else angle_toward(small, on_circle(large, angle).point)
+    if find_least_near(near, start, places):
+        complete(small, large, is_small, places[0])
+        if abs(within_turn(places[0].angle - angle)) < CLOSE_BY:
+            return 1
+    return near_places_by_circle(circle, other, flat_m, places)
 
 
 @kernel

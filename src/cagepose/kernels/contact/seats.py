@@ -1,4 +1,5 @@
 """A circle that lies all around in the slanted wall of a hole, as that of a countersunk head in its seat: a ball in it.
+So does the tube around one on that around another, as a rounded rim on a rounded mouth.
 
 The circle is on the ball about the place on the axis that its normals lead through. As the object turns about that
 place two of its points stay on the wall, equation (5.39): the circle moves as the ball does. Which two carry shows in
@@ -48,11 +49,13 @@ def is_listed_before(contacts: ContactSet, i: int) -> bool:
 
 @kernel
 def is_in_seat(geometry: Geometry, contacts: ContactSet, i: int) -> bool:
-    """Whether a contact is of a circle that lies all around on the slanted wall of a hole."""
+    """Whether a contact is of a circle that lies all around on the slanted wall of a hole, or on a tube."""
     row = contacts.rows[i]
     if contacts.bends[i].on_circle.length == 0.0:
         return False
     held, cage = geometry.held.features[row.feature], geometry.cage.own.features[row.cage_feature]
+    if held.kind == CIRCLE and cage.kind == CIRCLE:
+        return bool(contacts.bends[i].on_circle.is_on_ball)
     circle, wall = (cage, held) if contacts.bends[i].on_circle.is_of_cage else (held, cage)
     return bool(circle.kind == CIRCLE and wall.kind == LINE and wall.radius < 0.0 and wall.taper != 0.0)
 

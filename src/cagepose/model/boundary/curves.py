@@ -10,7 +10,7 @@ import numpy as np
 
 from cagepose.model.checks import FloatArray
 from cagepose.model.sides import IntArray, starts_and_ends
-from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, Surface
+from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, TORUS, Surface
 
 LINE, ARC, CHAIN = "line", "arc", "chain"
 ALONG_AXIS = 1e-6
@@ -149,21 +149,50 @@ def _curve(
         middle = (places[:1] + places[-1:]) / 2.0
         off = max(abs(float(surface.heights(middle)[0])) for surface in (one, other))
         return chain._replace(kind=LINE) if off <= 2.0 * flat_m else chain
+    return _around_axis(chain, places, one, other, flat_m) or _across_tube(chain, places, one, other, flat_m) or chain
+
+
+def _around_axis(chain: Curve, places: FloatArray, one: Surface, other: Surface, flat_m: float) -> Curve | None:
+    """Return a curve as an arc, if all of its places are at one height and one distance from an axis about which both
+    surfaces are the same all around.
+    """
     axis = _common_axis(one, other, flat_m)
     if axis is None or not (one.is_round or other.is_round):
-        return chain
-    # all places at one height and at one distance from the axis
+        return None
     origin, way = axis
     seen = places - origin
     along = seen @ way
     across = seen - np.outer(along, way)
     away = np.linalg.norm(across, axis=1)
     if max(np.ptp(along), np.ptp(away)) > 2.0 * flat_m or away.min() <= 4.0 * flat_m:
-        return chain
+        return None
     center = origin + _height(one, other, origin, way, float(along.mean())) * way
     radius = _radius(one, other, center, float(away.mean()))
     turn = float(np.einsum("ij,ij->i", np.cross(across[:-1], across[1:]), np.broadcast_to(way, across[1:].shape)).sum())
     return chain._replace(kind=ARC, center_m=center, axis=math.copysign(1.0, turn) * way, radius_m=radius)
+
+
+def _across_tube(chain: Curve, places: FloatArray, one: Surface, other: Surface, flat_m: float) -> Curve | None:
+    """Return a curve as an arc, if it is one of a circle of a torus's tube."""
+    tori = [surface for surface in (one, other) if surface.kind == TORUS]
+    if not tori:
+        return None
+    origin, axis = np.array(tori[0].point_m), np.array(tori[0].axis)
+    seen = places - origin
+    across = seen - np.outer(seen @ axis, axis)
+    out = across[np.linalg.norm(across, axis=1).argmax()]
+    for surface in (one, other):  # which tells its plane, if one of them does
+        if surface.kind in (PLANE, CYLINDER, CONE) and abs(float(axis @ np.array(surface.axis))) <= ALONG_AXIS:
+            out = math.copysign(1.0, float(out @ np.cross(surface.axis, axis))) * np.cross(surface.axis, axis)
+    out = out / np.linalg.norm(out)
+    way, center = np.cross(out, axis), origin + tori[0].core_m * out
+    arms = places - center
+    off = np.abs(np.linalg.norm(arms, axis=1) - abs(tori[0].radius_m))
+    if max(float(np.abs(arms @ way).max()), float(off.max())) > 2.0 * flat_m:
+        return None
+    turn = float(np.einsum("ij,j->i", np.cross(arms[:-1], arms[1:]), way).sum())
+    way = math.copysign(1.0, turn) * way
+    return chain._replace(kind=ARC, center_m=center, axis=way, radius_m=abs(tori[0].radius_m))
 
 
 def _is_straight(places_m: FloatArray, flat_m: float) -> bool:
@@ -181,7 +210,7 @@ def _common_axis(one: Surface, other: Surface, flat_m: float) -> tuple[FloatArra
     """Return a point and a unit vector of the axis about which both surfaces are the same all around; None: there is
     none.
     """
-    turned = [surface for surface in (one, other) if surface.kind in (CYLINDER, CONE)]
+    turned = [surface for surface in (one, other) if surface.kind in (CYLINDER, CONE, TORUS)]
     balls = [surface for surface in (one, other) if surface.kind == SPHERE]
     planes = [surface for surface in (one, other) if surface.kind == PLANE]
     if turned:
@@ -208,11 +237,18 @@ def _common_axis(one: Surface, other: Surface, flat_m: float) -> tuple[FloatArra
 
 
 def _height(one: Surface, other: Surface, origin: FloatArray, way: FloatArray, along: float) -> float:
-    """Return the height of an arc above a point of its axis: that of a plane where there is one, else a given one."""
+    """Return the height of an arc above a point of its axis: that of a plane where there is one, else the given one, or
+    that at which a torus has the radius of a cylinder.
+    """
     for surface in (one, other):
         if surface.kind == PLANE:
             normal = np.array(surface.axis)
             return float((np.array(surface.point_m) - origin) @ normal / (way @ normal))
+    for torus, side in ((one, other), (other, one)):
+        if torus.kind == TORUS and side.kind == CYLINDER:
+            level = float((np.array(torus.point_m) - origin) @ way)
+            rise = math.sqrt(max(0.0, torus.radius_m**2 - (abs(side.radius_m) - torus.core_m) ** 2))
+            return level + math.copysign(rise, along - level)
     return along
 
 
@@ -221,6 +257,11 @@ def _radius(one: Surface, other: Surface, center_m: FloatArray, away: float) -> 
     for surface in (one, other):
         if surface.kind in (CYLINDER, CONE):
             return surface.radius_at(center_m)
+    for surface in (one, other):
+        if surface.kind == TORUS:
+            rise = float((center_m - np.array(surface.point_m)) @ np.array(surface.axis))
+            half = math.sqrt(max(0.0, surface.radius_m**2 - rise**2))
+            return surface.core_m + math.copysign(half, away - surface.core_m)
     return away
 
 

@@ -1,4 +1,4 @@
-"""The boundary of a body whose triangles stand for planes, cylinders, cones and spheres: `exact_block`.
+"""The boundary of a body whose triangles stand for planes, cylinders, cones, spheres and tori: `exact_block`.
 
 A region of triangles on one surface is a face, trimmed by the curves in which it meets others. A curve is a line, an
 arc, or, as where two cylinders cross, a chain of short arcs.
@@ -24,11 +24,12 @@ from cagepose.model.boundary.round_features import ball_of, circle_of, is_within
 from cagepose.model.boundary.surface_corners import corners_of
 from cagepose.model.boundary.surface_regions import Regions, regions_on
 from cagepose.model.boundary.trimmed import Edges, Faces, TrimmedUnion
+from cagepose.model.boundary.tubes import ends_inner_tube, torus_of, tube_part
 from cagepose.model.boundary.union_block import union_block, with_rows
 from cagepose.model.checks import FloatArray, unit_rows
 from cagepose.model.facets import FLAT, Facets
 from cagepose.model.sides import IntArray, twins_of
-from cagepose.model.surfaces import PLANE, SPHERE, Surface
+from cagepose.model.surfaces import PLANE, SPHERE, TORUS, Surface
 
 SMOOTH = 1e-7
 """Sine of the angle between faces beside a curve. With less, one goes over into the other smoothly."""
@@ -87,11 +88,13 @@ def exact_block(shape: Facets, number: int) -> Block:
     rows = [
         circle_of(surface, index, number)
         for index, curve in enumerate(surface.curves)
-        if curve.kind == ARC and surface.sines[index] > SMOOTH
+        if curve.kind == ARC and (surface.sines[index] > SMOOTH or ends_inner_tube(surface, curve))
     ]
     for region, face in enumerate(surface.regions.surfaces):
         if face.kind == SPHERE:
             rows.append(ball_of(surface, region, number))
+        elif face.kind == TORUS:
+            rows.append(torus_of(surface, region, number))
         elif face.is_round:
             rows.append(side_of(surface, region, borders[region], number))
             rows += tip_of(surface, region, number)
@@ -99,9 +102,9 @@ def exact_block(shape: Facets, number: int) -> Block:
 
 
 def surface_of(shape: Facets) -> ExactSurface:
-    """Return a surface with its curves in the frame of its body. A ball that anything but circles trims, or one
-    with a notch, or a hollow one, stays facets. Those of the last few shapes are remembered: of a file it is asked what
-    is exact, and then a scene is built.
+    """Return a surface with its curves in the frame of its body. A ball or a torus that anything but circles trims, or
+    one with a notch, or a hollow one, stays facets. Those of the last few shapes are remembered: of a file it is asked
+    what is exact, and then a scene is built.
     """
     return _surface_of(_Placed((shape.form, *shape.pose_body_shape.key), shape))
 
@@ -119,7 +122,7 @@ def _surface_of(placed: _Placed) -> ExactSurface:
     shape = placed.shape
     surfaces = [surface.changed(1.0, shape.pose_body_shape) for surface in shape.surfaces]
     first = np.array([*(surfaces.index(surface) for surface in surfaces), -1])
-    found = _without_lost_balls(shape.nodes_body(), shape.triangles, first[shape.on], surfaces, shape.flat_m)
+    found = _without_lost(shape.nodes_body(), shape.triangles, first[shape.on], surfaces, shape.flat_m)
     near_m = FLAT * float(np.ptp(found.vertices_m, axis=0).max())
     for _ in range(HALVINGS):
         chains = [curve for curve in found.curves if curve.kind == CHAIN]
@@ -127,21 +130,23 @@ def _surface_of(placed: _Placed) -> ExactSurface:
         finer = halved(chains, found.vertices_m, found.triangles, found.on, found.regions, near_m)
         if len(finer[0]) == len(found.vertices_m):
             break
-        found = _without_lost_balls(*finer, surfaces, shape.flat_m)
+        found = _without_lost(*finer, surfaces, shape.flat_m)
     regions = found.regions
     curves, vertices_m = with_arcs(found.curves, found.vertices_m, regions, near_m)
     sines = _sines_beside(vertices_m, curves, regions.surfaces)
     return found._replace(vertices_m=vertices_m, curves=curves, sines=sines)
 
 
-def _without_lost_balls(
+def _without_lost(
     vertices_m: FloatArray, triangles: IntArray, on: IntArray, surfaces: Sequence[Surface], flat_m: float
 ) -> ExactSurface:
-    """Return a surface with its regions and curves, without sines; balls that are none of our features are facets."""
+    """Return a surface with its regions and curves, without sines; balls and tori that are none of our features are
+    facets.
+    """
     # what corners are off surfaces that are known, those of the other triangles are not off theirs
     flat_of_others_m = FLAT * float(np.ptp(vertices_m, axis=0).max()) if surfaces else flat_m
     twins = twins_of(vertices_m, triangles)
-    kept = np.array([not (surface.kind == SPHERE and surface.radius_m < 0.0) for surface in surfaces])
+    kept = np.array([not (surface.kind in (SPHERE, TORUS) and surface.radius_m < 0.0) for surface in surfaces])
     while True:
         known = np.where(kept[on] & (on >= 0), on, -1)
         regions = regions_on(vertices_m, triangles, twins, surfaces, known, flat_of_others_m)
@@ -151,12 +156,14 @@ def _without_lost_balls(
             for curve in curves
             if curve.kind != ARC
             for region in (curve.left, curve.right)
-            if regions.surfaces[region].kind == SPHERE
+            if regions.surfaces[region].kind in (SPHERE, TORUS)
         }
         found = ExactSurface(vertices_m, triangles, twins, on, regions, curves, [])
         if not lost:
             balls = [region for region, face in enumerate(regions.surfaces) if face.kind == SPHERE]
             lost = {regions.surfaces[region] for region in balls if not is_within_caps(found, region)}
+            tori = [region for region, face in enumerate(regions.surfaces) if face.kind == TORUS]
+            lost |= {regions.surfaces[region] for region in tori if tube_part(found, region) is None}
         if not lost:
             return found
         kept &= np.array([surface not in lost for surface in surfaces])

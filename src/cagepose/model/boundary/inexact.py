@@ -13,8 +13,11 @@ from cagepose.model.boundary.chains import ALONG, exact_beside
 from cagepose.model.boundary.curves import ARC
 from cagepose.model.boundary.exact_surface import ExactSurface, surface_of
 from cagepose.model.facets import Facets
-from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE
+from cagepose.model.surfaces import CONE, CYLINDER, PLANE, SPHERE, TORUS
 from cagepose.model.wording import counted
+
+PLURALS = {TORUS: "tori"}
+"""Of kinds of surfaces that have no s."""
 
 
 class ExactFaces(NamedTuple):
@@ -28,7 +31,7 @@ class ExactFaces(NamedTuple):
     @property
     def in_words(self) -> str:
         """Those that are exact, such as "12 planes, 4 cylinders"."""
-        return counted(*((number, kind, f"{kind}s") for kind, number in self.of_kinds.items()))
+        return counted(*((number, kind, PLURALS.get(kind, f"{kind}s")) for kind, number in self.of_kinds.items()))
 
 
 def exact_faces(shape: Facets) -> ExactFaces:
@@ -38,7 +41,7 @@ def exact_faces(shape: Facets) -> ExactFaces:
     regions = surface_of(shape).regions
     is_exact = np.array(regions.is_exact)
     found = Counter(face.kind for face, exact in zip(regions.surfaces, regions.is_exact, strict=True) if exact)
-    kinds = {kind: found[kind] for kind in (PLANE, CYLINDER, CONE, SPHERE) if found[kind]}
+    kinds = {kind: found[kind] for kind in (PLANE, CYLINDER, CONE, SPHERE, TORUS) if found[kind]}
     return ExactFaces(kinds, int((~is_exact[regions.of_triangles]).sum()))
 
 

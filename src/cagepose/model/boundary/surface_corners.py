@@ -17,7 +17,7 @@ from cagepose.model.boundary.surface_union import Tangents, cones_at
 from cagepose.model.boundary.trimmed import Vertices
 from cagepose.model.checks import FloatArray
 from cagepose.model.sides import starts_and_ends
-from cagepose.model.surfaces import CONE, PLANE, SPHERE, Surface
+from cagepose.model.surfaces import CONE, PLANE, SPHERE, TORUS, Surface
 
 if TYPE_CHECKING:
     from cagepose.model.boundary.exact_surface import ExactSurface
@@ -145,7 +145,7 @@ def _between(face: Surface, place: FloatArray, first: FloatArray, last: FloatArr
         angle = math.atan2(float(aside @ way), float(ahead @ way)) % (2.0 * math.pi)
         if SAME_WAY < angle < turn - SAME_WAY:
             ways[angle] = way
-    widest = WIDE if face.kind in (PLANE, SPHERE) else LESS_THAN_HALF
+    widest = WIDE if face.kind in (PLANE, SPHERE, TORUS) else LESS_THAN_HALF
     for one, other in pairwise([0.0, *sorted(ways), turn]):
         n_parts = max(1, math.ceil((other - one) / widest - 1e-9))
         for k in range(1, n_parts):
@@ -158,7 +158,7 @@ def _generators(face: Surface, place: FloatArray) -> list[FloatArray]:
     """Return the directions in which straight lines lead along a cylinder or a cone from a place of it: beside a chain
     of short edges nothing else of it is straight.
     """
-    if face.kind in (PLANE, SPHERE):
+    if face.kind in (PLANE, SPHERE, TORUS):
         return []
     axis, seen = np.array(face.axis), place - np.array(face.point_m)
     across = seen - (seen @ axis) * axis
