@@ -40,6 +40,4 @@ def slipping(
     table = Box((0.2, 0.2, 0.01), Pose((0.0, 0.0, -0.015)), "table")
     loads = [Load("close", gravity=weight, press=press), Load("lift", gravity=weight, press=press, drive=lift)]
     own = {} if of_left is None else {"pad 0": of_left}
-    return Scene(
-        block, Cage(shapes=[table], bodies=bodies), loads, friction_coefficient=friction, friction_of=own
-    )
+    return Scene(block, Cage(shapes=[table], bodies=bodies), loads, friction_coefficient=friction, friction_of=own)

@@ -26,6 +26,8 @@ again and again.
 """
 SLOW = 1e-2
 """Of all speeds: what slips so slowly may stick, where it is not found how it slips on."""
+HARDLY = 1e-5
+"""Likewise: what slips so slowly was let slip by rounding."""
 
 
 @kernel
@@ -156,7 +158,7 @@ def hold_still(drive: DriveSetting, work: DriveWorkspace) -> bool:
     which that leads to. Its friction then has the direction of rounding.
     """
     contacts, friction, found = work.run.contacts, drive.setting.friction.greatest, False
-    slow = SLOW * speed_of(contacts, work.scratch[0].way)
+    slow = HARDLY * speed_of(contacts, work.scratch[0].way)
     for i in range(contacts.used[0] if friction > 0.0 else 0):
         state, (one, two) = contacts.states[i], slip_of(contacts, i, work.scratch[0].way)
         slips = state.counts and not state.is_sticking and not is_smooth(contacts, i)

@@ -25,6 +25,7 @@ from cagepose.kernels.driven.bodies import (
 )
 from cagepose.kernels.driven.rate import APART, NO_SLIP, copy_contact, slip_of, speed_of, write_change
 from cagepose.kernels.driven.rest_of_mode import (
+    NEARLY_ON_FACE,
     along_slip,
     follow_contact,
     list_carrying,
@@ -58,7 +59,8 @@ BEGINS = 1e-9
 """In sizes of the scene: a contact that begins to slip is taken to have slipped so far, so that its friction has a
 direction."""
 KEPT_GAP = 1e-10
-"""In sizes of the scene: a gap that contacts keep where one of them sticks."""
+"""In sizes of the scene: a gap that a contact which sticks keeps, and any other where one sticks beside it, as that lets
+nothing close it; but for gaps that will do as closed."""
 LEAST_STABLE = 1e-9
 """In the stiffness: what is no more unstable than this is indifferent."""
 
@@ -91,11 +93,12 @@ def begin_trial(drive: DriveSetting, share: float, ahead: float, work: DriveWork
     for i in range(contacts.used[0]):
         copy_contact(contacts, i, trial, i)
     list_carrying(trial, drive.setting.friction.greatest, rest)
-    sticks = one_sticks(rest.newton)
+    size_m, sticks = drive.setting.size_m, one_sticks(rest.newton)
     for place in range(rest.newton.n_carrying):
         i = rest.newton.contacts[place]
         forces, gap = contacts.states[i].forces, contacts.rows[i].gap
-        is_kept = sticks and abs(gap) <= KEPT_GAP * drive.setting.size_m
+        least = 0.0 if rest.newton.modes[place] == STICKS else NEARLY_ON_FACE * size_m
+        is_kept = sticks and least <= abs(gap) <= KEPT_GAP * size_m
         rest.gaps[place] = gap if is_kept else 0.0
         one, two = slip_of(contacts, i, way)
         resists = math.sqrt(forces[1] ** 2 + forces[2] ** 2)
