@@ -36,8 +36,7 @@ def one_came_off(
 @kernel
 def touches(body: int, work: DriveWorkspace) -> bool:
     """Whether one of the contacts is with a body of the cage."""
-    contacts = work.run.contacts
+    contacts, found = work.run.contacts, False
     for i in range(contacts.used[0]):
-        if contacts.rows[i].cage_body == body:
-            return True
-    return False
+        found = found or contacts.rows[i].cage_body == body
+    return found

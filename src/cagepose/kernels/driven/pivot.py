@@ -154,8 +154,8 @@ def hold_slowest(drive: DriveSetting, work: DriveWorkspace) -> bool:
 def hold_still(drive: DriveSetting, work: DriveWorkspace) -> bool:
     """Let all contacts stick, with no friction to begin with, that were let slip and hardly do; False: there is none.
 
-    Where contacts share a load in many ways, one may leave its cone while forces rise that stays where it is in the mode
-    which that leads to. Its friction then has the direction of rounding.
+    Where contacts share a load in many ways, one may leave its cone while forces rise, and yet stay where it is in the
+    mode which that leads to. Its friction then has the direction of rounding.
     """
     contacts, friction, found = work.run.contacts, drive.setting.friction.greatest, False
     slow = HARDLY * speed_of(contacts, work.scratch[0].way)

@@ -59,8 +59,8 @@ BEGINS = 1e-9
 """In sizes of the scene: a contact that begins to slip is taken to have slipped so far, so that its friction has a
 direction."""
 KEPT_GAP = 1e-10
-"""In sizes of the scene: a gap that a contact which sticks keeps, and any other where one sticks beside it, as that lets
-nothing close it; but for gaps that will do as closed."""
+"""In sizes of the scene: a gap that a contact which sticks keeps, and where one does any other contact, too, as nothing
+can close it then; but for gaps that will do as closed."""
 LEAST_STABLE = 1e-9
 """In the stiffness: what is no more unstable than this is indifferent."""
 
@@ -73,10 +73,10 @@ def first_of_others() -> int:
 
 @kernel
 def one_sticks(newton: NewtonWorkspace) -> bool:
+    found = False
     for place in range(newton.n_carrying):
-        if newton.modes[place] == STICKS:
-            return True
-    return False
+        found = found or newton.modes[place] == STICKS
+    return found
 
 
 @kernel
