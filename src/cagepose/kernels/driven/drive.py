@@ -25,9 +25,10 @@ from cagepose.kernels.driven.bodies import (
     write_drift,
     write_drivers,
 )
+from cagepose.kernels.driven.came_off import one_came_off
 from cagepose.kernels.driven.could_jam import note_jams
 from cagepose.kernels.driven.history import add_work, keep_greatest, note_snap, write_driven, write_jump
-from cagepose.kernels.driven.pivot import keep_mode, mode_lasts, return_to_mode
+from cagepose.kernels.driven.pivot import hold_still, keep_mode, mode_lasts, return_to_mode
 from cagepose.kernels.driven.rate import APART, find_mode
 from cagepose.kernels.driven.rested import begin_at_rest, find_rested, keep_forces
 from cagepose.kernels.driven.snap import MOVED, opened_pose, rests_ahead, snaps
@@ -35,7 +36,7 @@ from cagepose.kernels.driven.stopped import OPENS, stopped_verdict
 from cagepose.kernels.driven.trial import write_way
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
-from cagepose.kernels.outcome.trace import LIMIT, RESTS, STALLED, STOPS
+from cagepose.kernels.outcome.trace import ESCAPES, LIMIT, RESTS, STALLED, STOPS
 from cagepose.kernels.quasistatic.state import State, at_rest, write_state
 from cagepose.kernels.quasistatic.step import note_touching, stand_at
 
@@ -214,6 +215,8 @@ def drive_on(
         here = at_rest(position, quaternion, state.turn_step_rad, n_still)
         ends = next_leg(work.memory, share)
         note_touching(run)
+        if run.contacts.n_freedoms > WRENCH and one_came_off(drive, position, quaternion, share, work):
+            return ESCAPES, step, here, share
 
         # Nothing happens before something is met.
         if stands_still(drive, position, quaternion, share, work):
@@ -249,6 +252,10 @@ def drive_on(
         reached, end, turned = share, position, quaternion
         if is_mode and step < step_limit:
             reached, end, turned = furthest_share(drive, position, quaternion, share, to_share, work)
+            if reached <= share and not goes_on and hold_still(drive, work):
+                is_mode = mode_lasts(drive, position, quaternion, share, to_share, work)
+                if is_mode:
+                    reached, end, turned = furthest_share(drive, position, quaternion, share, to_share, work)
         if reached - share > LEAST_ADVANCE or (is_mode and reached > share and n_still < STILL_LIMIT):
             write_state(run.trace.rows[step], here)
             add_work(drive, position, quaternion, share, end, turned, reached, work)

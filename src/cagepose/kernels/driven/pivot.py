@@ -26,6 +26,8 @@ again and again.
 """
 SLOW = 1e-2
 """Of all speeds: what slips so slowly may stick, where it is not found how it slips on."""
+HARDLY = 1e-5
+"""Likewise: what slips so slowly was let slip by rounding."""
 
 
 @kernel
@@ -146,6 +148,24 @@ def hold_slowest(drive: DriveSetting, work: DriveWorkspace) -> bool:
         return False
     contacts.states[at].is_sticking = True
     return True
+
+
+@kernel
+def hold_still(drive: DriveSetting, work: DriveWorkspace) -> bool:
+    """Let all contacts stick, with no friction to begin with, that were let slip and hardly do; False: there is none.
+
+    Where contacts share a load in many ways, one may leave its cone while forces rise, and yet stay where it is in the
+    mode which that leads to. Its friction then has the direction of rounding.
+    """
+    contacts, friction, found = work.run.contacts, drive.setting.friction.greatest, False
+    slow = HARDLY * speed_of(contacts, work.scratch[0].way)
+    for i in range(contacts.used[0] if friction > 0.0 else 0):
+        state, (one, two) = contacts.states[i], slip_of(contacts, i, work.scratch[0].way)
+        slips = state.counts and not state.is_sticking and not is_smooth(contacts, i)
+        if slips and math.sqrt(one * one + two * two) <= slow:
+            state.is_sticking = found = True
+            state.forces[1] = state.forces[2] = 0.0
+    return found
 
 
 @kernel

@@ -19,6 +19,7 @@ from cagepose.kernels.contact.equilibrium import AT_REST, HELD_BY_FRICTION, HELD
 from cagepose.kernels.contact.metric import frame_at, way_between
 from cagepose.kernels.contact.pressing import copy_pressing, number_pressing, write_whole_load
 from cagepose.kernels.driven.bodies import move_bodies, pose_from, write_drivers
+from cagepose.kernels.driven.came_off import FARTHEST
 from cagepose.kernels.driven.drive import drive_on
 from cagepose.kernels.driven.workspace import DriveSetting, DriveWorkspace
 from cagepose.kernels.native.kernel import kernel
@@ -42,8 +43,6 @@ MOST_LET_GO = 4
 """So often it does in a phase."""
 SWEEPS = 64
 """Drives of a phase, after which it has stalled."""
-FARTHEST = 10.0
-"""In sizes of the scene: a body that has gone so far and meets too little does not come back."""
 NO_WAY = 1e-11
 """In sizes of the scene: a shorter way is none."""
 

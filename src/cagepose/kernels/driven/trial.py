@@ -11,7 +11,7 @@ from cagepose.kernels.algebra.record import FloatArray
 from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.geometry import cage_at, held_moved
 from cagepose.kernels.boundary.met import Meeting
-from cagepose.kernels.contact.coulomb_newton import CARRYING_LIMIT, SLIPS, STICKS, n_forces
+from cagepose.kernels.contact.coulomb_newton import CARRYING_LIMIT, SLIPS, STICKS, NewtonWorkspace, n_forces
 from cagepose.kernels.contact.metric import frame_at, moved_along_twist, twist_of, way_between
 from cagepose.kernels.contact.pressing import copy_pressing
 from cagepose.kernels.driven.bodies import (
@@ -25,6 +25,7 @@ from cagepose.kernels.driven.bodies import (
 )
 from cagepose.kernels.driven.rate import APART, NO_SLIP, copy_contact, slip_of, speed_of, write_change
 from cagepose.kernels.driven.rest_of_mode import (
+    NEARLY_ON_FACE,
     along_slip,
     follow_contact,
     list_carrying,
@@ -58,7 +59,8 @@ BEGINS = 1e-9
 """In sizes of the scene: a contact that begins to slip is taken to have slipped so far, so that its friction has a
 direction."""
 KEPT_GAP = 1e-10
-"""In sizes of the scene: a gap that a contact which sticks keeps."""
+"""In sizes of the scene: a gap that a contact which sticks keeps, and where one does any other contact, too, as nothing
+can close it then; but for gaps that will do as closed."""
 LEAST_STABLE = 1e-9
 """In the stiffness: what is no more unstable than this is indifferent."""
 
@@ -67,6 +69,14 @@ LEAST_STABLE = 1e-9
 def first_of_others() -> int:
     """Return the place of the guards of contacts that do not carry, behind those that do."""
     return OF_CARRYING * CARRYING_LIMIT
+
+
+@kernel
+def one_sticks(newton: NewtonWorkspace) -> bool:
+    found = False
+    for place in range(newton.n_carrying):
+        found = found or newton.modes[place] == STICKS
+    return found
 
 
 @kernel
@@ -83,10 +93,12 @@ def begin_trial(drive: DriveSetting, share: float, ahead: float, work: DriveWork
     for i in range(contacts.used[0]):
         copy_contact(contacts, i, trial, i)
     list_carrying(trial, drive.setting.friction.greatest, rest)
+    size_m, sticks = drive.setting.size_m, one_sticks(rest.newton)
     for place in range(rest.newton.n_carrying):
         i = rest.newton.contacts[place]
         forces, gap = contacts.states[i].forces, contacts.rows[i].gap
-        is_kept = rest.newton.modes[place] == STICKS and abs(gap) <= KEPT_GAP * drive.setting.size_m
+        least = 0.0 if rest.newton.modes[place] == STICKS else NEARLY_ON_FACE * size_m
+        is_kept = sticks and least <= abs(gap) <= KEPT_GAP * size_m
         rest.gaps[place] = gap if is_kept else 0.0
         one, two = slip_of(contacts, i, way)
         resists = math.sqrt(forces[1] ** 2 + forces[2] ** 2)
@@ -126,10 +138,7 @@ def go_on(
         return position, quaternion
     end, turned = moved_along_twist(position, quaternion, velocity, spin, ahead)
     goes = plus(velocity, cross(spin, minus(end, position)))
-    sticks = False
-    for place in range(rest.newton.n_carrying):
-        sticks = sticks or rest.newton.modes[place] == STICKS
-    if not sticks:
+    if not one_sticks(rest.newton):
         return end, turned
     off, straight = worst_gap(drive, end, turned, work), plus(position, scaled(velocity, ahead))
     if off > NEXT_TO_NOTHING * setting.size_m:
