@@ -14,6 +14,7 @@ from cagepose.questions.plane_escape import way_out_in_plane
 from cagepose.questions.unanswered import Unanswered
 from cagepose.studies.plane_cells import Cells, State
 from cagepose.studies.plane_frame import PlaneFrame
+from cagepose.studies.plane_search import Found, WaySearch
 
 WEIGHT = Load("weight", gravity=(0.0, 0.0, -9.81))
 
@@ -80,6 +81,10 @@ def test_a_critical_value_is_closed_in_from_both_sides_also_where_it_is_not_foun
     assert 1.25 - 0.5 / 2**5 <= low <= 1.25
     assert 1.55 <= high <= 1.55 + 0.5 / 2**5
     assert _bracket(lambda _: None, 1.0, 2.0) == (None, None)
+    assert _bracket(lambda _: False, 1.0, 2.0) == (2.0, None)
+    assert _bracket(lambda _: True, 1.0, 2.0) == (None, 1.0)
+    with pytest.raises(SceneError, match="the other way round"):
+        _bracket(lambda value: value < 1.3, 1.0, 2.0)
 
 
 def test_a_square_leaves_four_pins_that_are_as_far_apart_as_it_is_wide() -> None:
@@ -116,11 +121,10 @@ def test_the_way_is_free_of_contact_and_no_higher_than_told() -> None:
     found = escape_energy(ended, n_motions=15_000)
     assert isinstance(found, EscapeEnergy)
     pose, start, highest = ended.pose, float(ended.pose.position_m[2]), -math.inf
-    for number, step in enumerate(found.path):
+    for step in found.path:
         for share in np.linspace(0.0, 1.0, 25):
             here = step.motion.pose_at(pose, float(share))
-            if number > 1:  # before, it leaves what it touches
-                scene.but_for(object=scene.object.starting_at(here))  # raises where the part is in the cage
+            scene.but_for(object=scene.object.starting_at(here))  # raises where the part is in the cage
             highest = max(highest, float(here.position_m[2]))
         pose = step.pose_world_object
         assert pose.position_m == pytest.approx(here.position_m, abs=1e-12)
@@ -174,6 +178,27 @@ def is_free(scene: Scene, pose: Pose) -> bool:
     except SceneError:
         return False
     return True
+
+
+def test_a_ball_on_a_ball_gets_out_by_next_to_no_work() -> None:
+    """Its start is the highest pose of a way out; where it leaves what it touches it is raised by less than a
+    thousandth of its reach.
+    """
+    ball = Object([], shapes=[Sphere(0.01)], pose=Pose((0, 0, 0.02)), mass_kg=1.0)
+    found = escape_energy(run(Scene(ball, Cage([], shapes=[Sphere(0.01)]), [WEIGHT], planar="xz")), n_motions=4_000)
+    assert isinstance(found, EscapeEnergy)
+    assert 0.0 <= found.at_least_j < found.at_most_j < 0.05 * 9.81 * 0.01
+
+
+def test_a_thin_strip_does_not_pass_through_pins_beside_it() -> None:
+    """It is half as thick as a hundred-thousandth of its length: play proves that it is caged, and cells cannot."""
+    pins = [(x, 0.0, side * 1.1e-5) for x in (-0.04, -0.02, 0.0, 0.02, 0.04) for side in (-1, 1)]
+    strip = Object([Box((0.1, 0.01, 2e-5))], mass_kg=1.0)
+    scene = Scene(strip, Cage([*pins, (-0.0501, 0, 0), (0.0501, 0, 0)]), [WEIGHT], planar="xz")
+    assert play(scene, search_s=0.0).verdict == "caged"
+    assert way_out_in_plane(scene, 5_000) is False
+    cells = Cells(scene, frame := PlaneFrame(scene, np.zeros((1, 3)), np.zeros((1, 3))))
+    assert WaySearch(cells, [frame.start]).go_on(5_000) != Found.WAY
 
 
 def test_a_hole_that_stands_alone_has_no_outside() -> None:

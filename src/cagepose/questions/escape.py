@@ -50,8 +50,8 @@ class EscapeEnergy:
     in_newtons
         Whether the load is in newtons.
     path
-        The way out that was found, free of contact; empty: none. In a plane, its first two motions lead to a pose that
-        is free, nearer to where the phase ended than a thousandth of the object's reach.
+        The way out that was found, free of contact; empty: none. In a plane, its first motion opens all contacts at
+        once.
     top
         The object's pose in the world where the load has least work done, on that path; None: there is none.
     n_ways

@@ -107,21 +107,25 @@ def critical_gap(
 
 
 def _bracket(way_out: Callable[[float], bool | None], tight: float, wide: float) -> tuple[float | None, float | None]:
-    """Return the last values, by halving, at which there is no way out and at which there is one, where it is found out
-    of a value which of both; where it is not, both are closed in to there.
+    """Return the last values, by halving, at which there is no way out and at which there is one. Where it is not found
+    out of a value which of both, both are closed in to there.
     """
-    low, high, middle = tight, wide, 0.5 * (tight + wide)
-    if way_out(tight) is False and way_out(wide) is True:
+    is_caged, gets_out = way_out(tight) is False, way_out(wide) is True
+    if way_out(tight) is True and way_out(wide) is False:
+        found = "it gets out at the first value, and is caged at the second; give them the other way round"
+        raise SceneError([Problem(("range",), found)])
+    low, high, unknown = tight, wide, wide if is_caged else tight
+    if is_caged and gets_out:
         for _ in range(N_HALVINGS):
-            middle = 0.5 * (low + high)
-            is_out = way_out(middle)
+            unknown = 0.5 * (low + high)
+            is_out = way_out(unknown)
             if is_out is None:
                 break
-            low, high = (low, middle) if is_out else (middle, high)
+            low, high = (low, unknown) if is_out else (unknown, high)
         else:
             return low, high
-    caged_at = _last(lambda value: way_out(value) is False, low, middle, N_AROUND)
-    return caged_at, _last(lambda value: way_out(value) is True, high, middle, N_AROUND)
+    caged_at = _last(lambda value: way_out(value) is False, low, unknown, N_AROUND)
+    return caged_at, _last(lambda value: way_out(value) is True, high, unknown, N_AROUND)
 
 
 def _last(holds: Callable[[float], bool], first: float, last: float, n_halvings: int = N_HALVINGS) -> float | None:

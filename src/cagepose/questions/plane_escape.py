@@ -13,9 +13,11 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.studies.cage_verdict import PathStep
 from cagepose.studies.plane_cells import Cell, Cells
-from cagepose.studies.plane_frame import InPlane, PlaneFrame
+from cagepose.studies.plane_frame import PlaneFrame
+from cagepose.studies.plane_lift import lifted
 from cagepose.studies.plane_search import Found, WaySearch
-from cagepose.studies.plane_way import motions_of
+from cagepose.studies.plane_way import way_of
+from cagepose.studies.play import play
 
 N_POSES = 60_000
 AS_NEAR = 0.01
@@ -28,8 +30,12 @@ ENDLESS = "a hole that stands alone is in a plate without end, out of whose reac
 
 def way_out_in_plane(scene: Scene, n_poses: int) -> bool | None:
     """Return whether there is a way out; None: it was not found out by asking at so many poses."""
+    if play(scene, search_s=0.0).verdict == "caged":
+        return False
     frame = PlaneFrame(scene, np.zeros((1, 3)), np.zeros((1, 3)))
-    found = WaySearch(Cells(scene, frame), frame.start, math.inf).go_on(n_poses)
+    cells = Cells(scene, frame)
+    lift = lifted(cells)
+    found = WaySearch(cells, [frame.start] if lift is None else [frame.start, lift.end]).go_on(n_poses)
     return None if found == Found.UNDECIDED else found == Found.WAY
 
 
@@ -58,33 +64,27 @@ def least_work_in_plane(
     frame = PlaneFrame(scene, forces, points)
     cells, level_j = Cells(scene, frame), frame.potential(frame.start)
     levels_j = LEVEL * frame.load * scene.size_m
+    lift = lifted(cells)
+    starts = [frame.start] if lift is None else [frame.start, lift.end]
+    lift_j = 0.0 if lift is None else max(frame.potential(lift.end) - level_j, 0.0)
     at_least_j, at_most_j, cap_j = 0.0, math.inf, math.inf
     best, n_ways = list[Cell](), 0
     while cells.n_asked < n_poses:
-        if progress is not None:
-            progress(cells.n_asked / n_poses)
-        search = WaySearch(cells, frame.start, cap_j)
-        found = search.go_on(n_poses)
+        search = WaySearch(cells, starts, cap_j)
+        found = search.go_on(n_poses, progress)
         if found == Found.NONE:
             at_least_j = cap_j - level_j
         elif found == Found.WAY:
-            best, n_ways = search.way, n_ways + 1
-            at_most_j = max((frame.potentials(cells.block(cell))[1] for cell in best), default=level_j) - level_j
-            at_most_j = max(at_most_j, 0.0)
-        if at_least_j == math.inf or at_most_j <= max(levels_j, (1.0 + AS_NEAR) * at_least_j):
-            break
-        if found == Found.UNDECIDED:
+            greatest_j = (frame.potentials(cells.block(cell))[1] - level_j for cell in search.way)
+            takes_j = max([lift_j, *greatest_j])
+            if takes_j >= at_most_j:  # the first step away from what it touches is the highest
+                break
+            best, n_ways, at_most_j = search.way, n_ways + 1, takes_j
+        is_known = at_least_j == math.inf or at_most_j <= max(levels_j, (1.0 + AS_NEAR) * at_least_j)
+        if is_known or found == Found.UNDECIDED:
             break
         cap_j = level_j + 0.5 * (at_least_j + at_most_j)
-    path, top = _path(cells, best, level_j + at_most_j)
-    return LeastWork(at_least_j, at_most_j, path, top, n_ways, cells.n_asked)
-
-
-def _path(cells: Cells, way: list[Cell], cap_j: float) -> tuple[tuple[PathStep, ...], Pose | None]:
-    """Return the motions of a way, and the pose where the potential is greatest on it."""
-    if not way:
-        return (), None
-    places, steps = motions_of(cells, way, cap_j)
-    frame = cells.frame
-    highest: InPlane = max(places, key=frame.potential)
-    return tuple(steps), frame.pose(highest)
+    if lift is None or not best:
+        return LeastWork(at_least_j, at_most_j, (), None, n_ways, cells.n_asked)
+    way = way_of(cells, lift, best, level_j + at_most_j)
+    return LeastWork(at_least_j, at_most_j, way.steps, frame.pose(way.top), n_ways, cells.n_asked)

@@ -33,7 +33,9 @@ def held_for_play(scene: Scene, hold: Sequence[str]) -> FloatArray:
         problems.append(f"has {named}; the freedoms are {few(FREEDOMS, len(FREEDOMS))}")
     else:
         held[[FREEDOMS.index(name) for name in hold]] = 1.0
-        if held[N_LENGTHS:].sum() == 1.0:  # to hold one of three turns in a row depends on their order
+        if held.all():
+            problems.append("leaves nothing that could move; leave out one of them")
+        elif held[N_LENGTHS:].sum() == 1.0:  # to hold one of three turns in a row depends on their order
             problems.append("leaves two turns of three, which no pose can be told by; hold two of them, or all three")
     rotation = scene.cage.pose_world_cage.rotation
     if np.abs(rotation - np.eye(N_LENGTHS)).max() > LEAST_TILT:

@@ -16,7 +16,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.driven_cage import CageAt
 from cagepose.studies.plane_frame import Block, InPlane, PlaneFrame
-from cagepose.studies.touching import TouchFinder
+from cagepose.studies.touching import PlacesOfContact, TouchFinder
 
 MOST_GAPS = 10
 """That there is memory for, where one is asked."""
@@ -59,7 +59,8 @@ class Cells:
     frame
         See there.
     n_asked
-        Poses at which it was asked how deep the object is in the cage, or how far from it.
+        Poses at which it was asked how deep the object is in the cage, or how far from it; and parts of free cells,
+        which are free.
     """
 
     def __init__(self, scene: Scene, frame: PlaneFrame) -> None:
@@ -117,6 +118,7 @@ class Cells:
         self._divided.add(cell)
         found = [(level + 1, 2 * i + a, 2 * j + b, 2 * k + c) for a, b, c in HALVES]
         if self._states.pop(cell, State.OPEN) == State.FREE:
+            self.n_asked += len(found)
             self._states.update(dict.fromkeys(found, State.FREE))
         return found
 
@@ -159,9 +161,12 @@ class Cells:
             return 0.0
         n_found = find_gaps(self._touches.geometry, *pose, within_m, True, self._touches.placement, self._gaps)
         if n_found == 0:
-            touching = len(self._touches.at(Pose(*pose), self._cage).elements) > 0
-            return 0.0 if touching else within_m
+            return 0.0 if len(self.touching(at).elements) else within_m
         return float(self._found.rows[0].gap) if n_found > 0 else 0.0
+
+    def touching(self, at: InPlane) -> PlacesOfContact:
+        """Return where the object touches the cage at a pose."""
+        return self._touches.at(self.frame.pose(at), self._cage)
 
     def _depth_m(self, pose: tuple[Vector, Quaternion]) -> float:
         return overlap_at(self._touches.geometry, *pose, self._touches.placement, self._overlaps)[2]

@@ -51,6 +51,8 @@ class PlaneFrame:
         The pose at which the object starts.
     reach_m
         No point of the object is farther from its middle, as seen along the plane's normal, metres.
+    axes
+        Which axes of the world are the plane's.
     load
         The sum of the sizes of all forces in the plane.
     center, outside_m
@@ -61,25 +63,25 @@ class PlaneFrame:
         """``forces`` (n, 3) act at points (n, 3) of the object and keep their direction."""
         assert scene.planar is not None
         self._normal = normal_axis(scene.planar)
-        self._axes = [axis for axis in range(3) if axis != self._normal]
+        self.axes = [axis for axis in range(3) if axis != self._normal]
         self._sense = -1.0 if self._normal == 1 else 1.0  # about y, z turns toward x
         held, cage = scene.object, scene.cage
         pose = held.pose_world_object
         around, ways = np.linspace(0.0, 2.0 * math.pi, N_WAYS, endpoint=False), np.zeros((N_WAYS, 3))
-        ways[:, self._axes] = np.stack([np.cos(around), np.sin(around)], axis=1)
+        ways[:, self.axes] = np.stack([np.cos(around), np.sin(around)], axis=1)
         heights = _heights(held.parts, scene.geometry.held, ways @ pose.rotation)
         self._arm, self.reach_m = _circle_around(ways, heights)
         at = cage.pose_world_cage
         heights = _heights(cage.shapes, scene.geometry.cage.own, ways @ at.rotation)
         heights = np.maximum(heights, (ways @ at.rotation @ cage.points_cage.T).max(axis=1, initial=-np.inf))
         center, radius_m = _circle_around(ways, heights + ways @ at.position_m)
-        self.center, self.outside_m = center[self._axes], radius_m + self.reach_m
+        self.center, self.outside_m = center[self.axes], radius_m + self.reach_m
         self._quaternion, self._level = pose.as_tuples()[1], float((pose.position_m + self._arm)[self._normal])
-        place = (pose.position_m + self._arm)[self._axes]
+        place = (pose.position_m + self._arm)[self.axes]
         self.start = InPlane(float(place[0]), float(place[1]), 0.0)
         # Of a turn, the forces' work is C cos + S sin of the angle.
-        arms = (points_object @ pose.rotation.T - self._arm)[:, self._axes]
-        acting = forces[:, self._axes]
+        arms = (points_object @ pose.rotation.T - self._arm)[:, self.axes]
+        acting = forces[:, self.axes]
         self._force = (float(acting[:, 0].sum()), float(acting[:, 1].sum()))
         self.load = float(np.linalg.norm(acting, axis=1).sum())
         even = float((acting * arms).sum())
@@ -89,10 +91,10 @@ class PlaneFrame:
     def pose_of(self, at: InPlane) -> tuple[Vector, Quaternion]:
         """Return a pose as kernels take it."""
         cosine, sine = math.cos(at.turn), self._sense * math.sin(at.turn)
-        a, b = (float(self._arm[axis]) for axis in self._axes)
+        a, b = (float(self._arm[axis]) for axis in self.axes)
         position = [0.0, 0.0, 0.0]
-        position[self._axes[0]] = at.u - (cosine * a - sine * b)
-        position[self._axes[1]] = at.v - (sine * a + cosine * b)
+        position[self.axes[0]] = at.u - (cosine * a - sine * b)
+        position[self.axes[1]] = at.v - (sine * a + cosine * b)
         position[self._normal] = self._level - float(self._arm[self._normal])
         half, c = math.sin(0.5 * at.turn), math.cos(0.5 * at.turn)
         w, x, y, z = self._quaternion
@@ -129,8 +131,12 @@ class PlaneFrame:
     def place(self, at: InPlane) -> FloatArray:
         """Return where the object's middle is in the world, (3,), metres."""
         found = np.zeros(3)
-        found[self._axes], found[self._normal] = at[:2], self._level
+        found[self.axes], found[self._normal] = at[:2], self._level
         return found
+
+    def at(self, place: FloatArray, turn: float) -> InPlane:
+        """Return the pose with the object's middle at a place of the world, (3,)."""
+        return InPlane(float(place[self.axes[0]]), float(place[self.axes[1]]), turn)
 
     @property
     def normal(self) -> FloatArray:
@@ -142,10 +148,14 @@ class PlaneFrame:
         """Return the work against the load from where its points are in the middle, joules."""
         return -self._force[0] * at.u - self._force[1] * at.v - self._swing * math.cos(at.turn - self._phase)
 
-    def highest(self, begin: InPlane, end: InPlane) -> float:
-        """Return the greatest potential on a turn, or on a travel, from one pose to another."""
-        turned = Block(begin._replace(turn=0.5 * (begin.turn + end.turn)), 0.0, 0.5 * abs(end.turn - begin.turn))
-        return max(self.potentials(turned)[1], self.potential(end))
+    def highest(self, begin: InPlane, end: InPlane) -> InPlane:
+        """Return the pose of the greatest potential on a turn, or on a travel, from one pose to another."""
+        asked = [begin, end]
+        if begin.turn != end.turn:
+            low, high = sorted((begin.turn, end.turn))
+            top = low + (self._phase + math.pi - low) % (2.0 * math.pi)
+            asked += [begin._replace(turn=top)] if top < high else []
+        return max(asked, key=self.potential)
 
     def potentials(self, block: Block) -> tuple[float, float]:
         """Return the least and the greatest potential in a block."""

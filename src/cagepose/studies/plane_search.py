@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import heapq
+import math
+from collections.abc import Callable, Sequence
 from enum import Enum
 from itertools import count
 from typing import NamedTuple
@@ -10,8 +12,8 @@ from typing import NamedTuple
 from cagepose.studies.plane_cells import Cell, Cells, State
 from cagepose.studies.plane_frame import InPlane
 
-BESIDE = 1e-3
-"""Of the object's reach. A way out may begin at a pose that is so near to the start, which may touch the cage."""
+BETWEEN_TELLING = 500
+"""Poses, a tenth of a second."""
 FREE, OPEN, BLOCKED = (int(state) for state in State)
 
 
@@ -45,8 +47,8 @@ class Label(NamedTuple):
 
 
 class WaySearch:
-    """Looks for a way from a pose to where nothing is in the object's reach, with no pose on it above a cap of the
-    potential.
+    """Looks for a way from one of some poses, between which the object can go, to where nothing is in its reach, with
+    no pose on it above a cap of the potential.
 
     Of all ways through cells that are not blocked, or above the cap, one with the fewest cells that are not known to be
     free is looked for, and the widest of these are divided: until there is a way through free cells, or none is left.
@@ -60,27 +62,29 @@ class WaySearch:
         The cells of a way out that was found.
     """
 
-    def __init__(self, cells: Cells, start: InPlane, cap_j: float) -> None:
-        self._cells, self._frame, self._start, self._cap_j = cells, cells.frame, start, cap_j
-        self._beside_m = BESIDE * self._frame.reach_m
+    def __init__(self, cells: Cells, starts: Sequence[InPlane], cap_j: float = math.inf) -> None:
+        self._cells, self._frame, self._starts, self._cap_j = cells, cells.frame, starts, cap_j
         self._reached, self._followers = dict[Cell, Label](), dict[Cell, set[Cell]]()
         self._waiting = list[tuple[int, float, float, int, Cell, Cell | None]]()
         self._facts, self._tie = dict[Cell, Known](), count()
         self.found, self.way = Found.UNDECIDED, list[Cell]()
-        if cells.cell_of(start) is None:  # it is out
-            self.found = Found.WAY
-        else:
-            self._first = self._begin()
+        self._begin()
 
-    def go_on(self, n_poses: int) -> Found:
-        """Search until something is found out, or so many poses have been asked in all."""
+    def go_on(self, n_poses: int, progress: Callable[[float], None] | None = None) -> Found:
+        """Search until something is found out, or so many poses have been asked in all; call ``progress`` with the
+        share of them now and then.
+        """
+        told = 0
         while self.found == Found.UNDECIDED and self._cells.n_asked < n_poses:
+            if progress is not None and self._cells.n_asked >= told:
+                progress(self._cells.n_asked / n_poses)
+                told = self._cells.n_asked + BETWEEN_TELLING
             last = self._next_out()
             if last is None:
                 self.found = Found.NONE
                 break
             way = self._way_to(last)
-            unknown = [cell for cell in way if self._known(cell).state == OPEN and not self._is_beside_start(cell)]
+            unknown = [cell for cell in way if self._known(cell).state == OPEN]
             if not unknown:
                 self.found, self.way = Found.WAY, way
                 break
@@ -88,11 +92,14 @@ class WaySearch:
             self._divide([cell for cell in unknown if cell[0] == widest])
         return self.found
 
-    def _begin(self) -> Cell:
-        first = self._cells.cell_of(self._start)
-        assert first is not None
-        self._put(first, None)
-        return first
+    def _begin(self) -> None:
+        """Have the cells of all starts wait."""
+        for start in self._starts:
+            cell = self._cells.cell_of(start)
+            if cell is None:  # it is out
+                self.found = Found.WAY
+            elif cell not in self._reached:
+                self._put(cell, None)
 
     def _next_out(self) -> Cell | None:
         """Return the cell at the end of the best way out; None: there is none."""
@@ -154,15 +161,9 @@ class WaySearch:
                 lost.append(at)
                 waiting += self._followers.pop(at, ())
         parts = [part for cell in cells for part in self._cells.divide(cell)]
-        if self._cells.is_divided(self._first):
-            self._first = self._begin()
+        self._begin()
         for at in [*lost, *parts]:
             if not self._cells.is_divided(at) and self._known(at).state != BLOCKED:
                 for beside in self._cells.beside(at):
                     if beside in self._reached:
                         self._put(at, beside)
-
-    def _is_beside_start(self, cell: Cell) -> bool:
-        """Whether all poses of a cell are near the start."""
-        block, start = self._cells.block(cell), self._start
-        return self._frame.apart(block.middle, start) + self._frame.goes_by(block) <= self._beside_m

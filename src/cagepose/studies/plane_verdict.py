@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -13,11 +12,12 @@ from cagepose.model.wording import number_of
 from cagepose.studies.cage_verdict import CageVerdict
 from cagepose.studies.plane_cells import Cells
 from cagepose.studies.plane_frame import PlaneFrame
+from cagepose.studies.plane_lift import lifted
 from cagepose.studies.plane_search import Found, WaySearch
-from cagepose.studies.plane_way import motions_of
+from cagepose.studies.plane_way import way_of
 
-N_POSES, OF_BATCH = 40_000, 500
-"""Poses that are asked, some seconds; and at a time."""
+N_POSES = 40_000
+"""That are asked, in some seconds."""
 
 
 def judge_in_plane(
@@ -34,20 +34,18 @@ def judge_in_plane(
     """
     frame = PlaneFrame(scene, np.zeros((1, 3)), np.zeros((1, 3)))
     cells = Cells(scene, frame)
-    search = WaySearch(cells, frame.start, math.inf)
-    while searches and search.found == Found.UNDECIDED and cells.n_asked < N_POSES:
-        if progress is not None:
-            progress(cells.n_asked / N_POSES)
-        search.go_on(cells.n_asked + OF_BATCH)
+    lift = lifted(cells) if searches else None
+    search = WaySearch(cells, [frame.start] if lift is None else [frame.start, lift.end])
+    if searches:
+        search.go_on(N_POSES, progress)
     n_asked, poses = cells.n_asked, number_of(cells.n_asked, "pose")
     if search.found == Found.NONE:
         reason = f"every way out in the plane leads through poses at which the object is in the cage; asked at {poses}"
         return CageVerdict("caged", reason, free_directions, None, None, n_asked)
     if search.found == Found.WAY:
-        _, path = motions_of(cells, search.way, math.inf) if search.way else ([], [])
-        motions = number_of(len(path), "motion")
-        reason = f"a way out of {motions} was found"
-        return CageVerdict("escapes", reason, free_directions, tuple(path), None, n_asked)
+        path = way_of(cells, lift, search.way).steps if lift is not None else ()
+        reason = f"a way out of {number_of(len(path), 'motion')} was found"
+        return CageVerdict("escapes", reason, free_directions, path, None, n_asked)
     searched = "no way out was searched"
     if n_asked:
         searched = f"asked at {poses}, and neither a way out was found nor that there is none"

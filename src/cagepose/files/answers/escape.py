@@ -24,6 +24,8 @@ def lines(answer: EscapeEnergy, words: LengthWords) -> list[tuple[str, str]]:
     energy = f"at most {most} {unit}, by a way that was found; no lower bound is known"
     if answer.at_least_j > 0.0:
         energy = f"at least {least} {unit}, as no way out takes less; at most {most}, by a way that was found"
+    if answer.at_most_j == 0.0:
+        energy = "none: a way out was found that nowhere goes against the load"
     steps = [
         ("way out" if number == 0 else "", f"{step.motion.kind} {line_of(step.motion)} {words.amount(step.motion)}")
         for number, step in enumerate(answer.path)
