@@ -84,7 +84,8 @@ def least_work_in_plane(
         if is_known or found == Found.UNDECIDED:
             break
         cap_j = level_j + 0.5 * (at_least_j + at_most_j)
-    if lift is None or not best:
-        return LeastWork(at_least_j, at_most_j, (), None, n_ways, cells.n_asked)
+    if lift is None or n_ways == 0:
+        top = frame.pose(frame.start) if n_ways else None
+        return LeastWork(at_least_j, at_most_j, (), top, n_ways, cells.n_asked)
     way = way_of(cells, lift, best, level_j + at_most_j)
     return LeastWork(at_least_j, at_most_j, way.steps, frame.pose(way.top), n_ways, cells.n_asked)

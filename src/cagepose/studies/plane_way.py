@@ -51,7 +51,7 @@ def way_of(cells: Cells, lift: Lift, way: Sequence[Cell], cap_j: float = math.in
         short.append(places[known])
         at = known
     steps = [] if lift.step is None else [lift.step]
-    tops = [frame.start]
+    tops = [frame.start, lift.end]
     for one, other in pairwise(short):
         steps += _steps(frame, one, other)
         tops += [frame.highest(*leg) for leg in _legs(one, other)]

@@ -5,7 +5,11 @@ from __future__ import annotations
 import math
 
 from cagepose.files.words import LengthWords, line_of
+from cagepose.model.wording import short
 from cagepose.questions.escape import EscapeEnergy
+
+NOISE_DEG = 1e-9
+"""Angles below this are told as 0."""
 
 
 def lines(answer: EscapeEnergy, words: LengthWords) -> list[tuple[str, str]]:
@@ -31,6 +35,6 @@ def lines(answer: EscapeEnergy, words: LengthWords) -> list[tuple[str, str]]:
         for number, step in enumerate(answer.path)
     ]
     assert answer.top is not None  # there is a path
-    angles = ", ".join(f"{math.degrees(angle):.4g}" for angle in answer.top.euler_zyx)
+    angles = ", ".join(short(math.degrees(angle), 4, NOISE_DEG) for angle in answer.top.euler_zyx)
     top = f"at ({words.lengths(answer.top.position_m)}) {words.unit}, yaw pitch roll ({angles}) deg"
     return [*told, ("energy", energy), ("highest", top), *steps, tried]
