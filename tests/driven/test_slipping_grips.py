@@ -73,6 +73,7 @@ def test_pads_that_slip_off_end_the_drive():
     assert lifted.drive.share * 0.04 == pytest.approx(0.009, abs=1e-6)
     assert lifted.pose.position_m[2] == pytest.approx(0.0, abs=1e-9)
     assert lifted.drive.greatest_along == pytest.approx(2.0 * 0.15 * FORCE_N, rel=0.01)
+    assert any("slipped off the object" in warning for warning in found.warnings)
 
 
 @pytest.mark.parametrize("off_m", [(0.002, 0.0), (0.0, 0.003)])

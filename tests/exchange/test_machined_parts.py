@@ -58,6 +58,10 @@ def off_told(case: Case, name: str, done: Run) -> list[float]:
     return found
 
 
+RUNS_DOWN = 1e-6
+"""In sizes: where a motion comes to its end that friction could hold before, the place hangs on how steps are cut."""
+
+
 def check_exactly(name: str, reader: Reader) -> None:
     case = case_of(name)
     scene = case.scene(reader)
@@ -71,7 +75,8 @@ def check_exactly(name: str, reader: Reader) -> None:
     if case.told:
         assert np.abs(off_told(case, name, done)).max() <= allowed
     else:
-        assert apart(run_of_twin(name)[0], scene) <= EXACT
+        runs_down = any(event.note == "could stay" for event in done.phases[-1].events)
+        assert apart(run_of_twin(name)[0], scene) <= (RUNS_DOWN if runs_down else EXACT)
 
 
 @pytest.mark.usefixtures("in_this_process")

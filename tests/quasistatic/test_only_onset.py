@@ -306,11 +306,12 @@ def held_by(columns: np.ndarray, friction: float, random: np.random.Generator) -
 
 
 def held_blocks(random: np.random.Generator, friction: float) -> Iterator[Held]:
-    """Where friction can hold blocks: where they come to rest, and on the way where they go on because they move."""
+    """Where friction can hold blocks: where they come to rest, and at one place of each motion that goes on there."""
     while True:
         scene = pushed_block(random, friction)
         phase = run(scene).phases[0]
-        poses = [pose for event in phase.events if event.note == "could stay" for pose in event.path[:-1]]
+        going = [event.path for event in phase.events if event.note == "could stay" and len(event.path) > 1]
+        poses = [path[len(path) // 2 - 1] for path in going]
         if phase.proof.verdict != "moves" and phase.proof.needs_friction:
             poses.append(phase.pose)
         part, at = part_of(scene), empty_proof_workspace(scene.geometry)

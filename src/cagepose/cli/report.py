@@ -21,6 +21,7 @@ from cagepose.files.units import LengthUnit
 from cagepose.files.words import LengthWords, friction_words
 from cagepose.model.wording import duration, short
 from cagepose.runs.cases import greatest_friction
+from cagepose.runs.drives import bodies_off
 from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import AT_REST, CONTRADICTED, FAILURES, STOPPED, PhaseRun, Run
 from cagepose.studies.ending import run_kind, turned_far
@@ -31,6 +32,7 @@ POSES = {
     **dict.fromkeys(FAILURES, "where the run stopped; not a position of rest"),
 }
 """Where the pose is taken from, if it is not that of a rest."""
+SLIPPED_OFF = "where what presses came off the object"
 LARGE_FORCE_IN_LOADS = 10.0
 """In loads. A greater force of the proof is told."""
 
@@ -100,7 +102,7 @@ class _Writer:
         table = Table.grid(padding=(0, 2))
         for name, value in (
             *(line for phase in run.phases[:-1] if self.is_verbose for line in self._end(phase)),
-            ("pose", POSES.get(run.verdict, "")),
+            ("pose", SLIPPED_OFF if self._is_off() else POSES.get(run.verdict, "")),
             *self._end(run.phases[-1]),
             ("turned", "; ".join(turned_far(run))),
             *drive_lines(run, self.words),
@@ -132,9 +134,14 @@ class _Writer:
     def _onset(self) -> str:
         """How the object begins to move where nothing stops it, or could begin to where it only may rest."""
         motion = self.run.phases[-1].proof.motion
-        if motion is None or self.run.failed:
+        if motion is None or self.run.failed or self._is_off():
             return ""
         return self.words.onset(motion)
+
+    def _is_off(self) -> bool:
+        """Whether the run ends as what presses came off the object."""
+        run = self.run
+        return bool(bodies_off(run.scene, run.phases[-1], run.scene.loads[len(run.phases) - 1]))
 
 
 def _contact_texts(phase: PhaseRun, *, is_verbose: bool) -> list[str]:

@@ -170,3 +170,15 @@ def at_start(scene: Scene) -> FloatArray:
     metres, the first being what stands still: not at all.
     """
     return np.tile([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], (1 + len(scene.cage.bodies), 1))
+
+
+def bodies_off(scene: Scene, phase: PhaseRun, load: Load) -> list[str]:
+    """Return the bodies that press beside a drive and came off the object, with nothing ahead of them, by name: there
+    the drive has ended, though nothing is said of the object.
+    """
+    if phase.verdict != "escapes" or phase.drive is None or not load.press:
+        return []
+    bodies = [None, *(body.name for body in scene.cage.bodies)]
+    names = dict(zip(scene.cage.element_names, scene.cage.element_bodies, strict=True))
+    touching = {bodies[names[contact.point]] for contact in phase.contacts}
+    return [name for name in load.press if name not in touching]

@@ -12,9 +12,10 @@ from cagepose.kernels.quasistatic.step import RULE_NAMES, STUCK
 from cagepose.model.load import Load
 from cagepose.model.remarks import remarks
 from cagepose.model.scene import Scene
+from cagepose.model.wording import few
 from cagepose.runs.actions import actions_of
 from cagepose.runs.driven import DriveRun
-from cagepose.runs.drives import drives_of
+from cagepose.runs.drives import bodies_off, drives_of
 from cagepose.runs.run import PhaseRun
 from cagepose.runs.warnings_of_runs import (
     edge_warnings,
@@ -64,8 +65,18 @@ def quasistatic_warnings(scene: Scene, phases: Sequence[PhaseRun], friction: flo
         yield from spring_warnings(scene, phase)
     if not any(spring_warnings(scene, phases[-1])):  # they say why
         yield from _failure_warnings(phases[-1], scene.loads[len(phases) - 1])
+    yield from _off_warnings(scene, phases[-1], scene.loads[len(phases) - 1])
     yield from unrun_warnings(scene, phases)
     yield from proof_warnings(phases, friction)
+
+
+def _off_warnings(scene: Scene, phase: PhaseRun, load: Load) -> Iterator[str]:
+    """Where a grip has slipped off."""
+    if off := bodies_off(scene, phase, load):
+        yield (
+            f"{phase.name}: {few(off)} slipped off the object and has nothing ahead, so the drive ends here; press"
+            " harder, or end it before, to see what the object does"
+        )
 
 
 def _edge_motion_warnings(phase: PhaseRun) -> Iterator[str]:
