@@ -132,3 +132,21 @@ loads: [{name: weight, gravity: [0, 0, -1]}]
     low, high = ends["pitch"].low.exact, ends["pitch"].high.exact
     assert (low, high) != (None, None)
     assert (found["play_pitch_deg_low"], found["play_pitch_deg_high"]) == (np.degrees(low), np.degrees(high))
+
+
+def test_a_play_without_end_in_all_rows_is_in_the_report(run_study: RunStudy, tmp_path: Path) -> None:
+    """Warnings are errors here: of infinite ends no difference is told."""
+    scene = tmp_path / "board.yaml"
+    scene.write_text("""\
+name: board
+units: {length: mm}
+planar: xz
+object: {shapes: [{box: {size: [80, 30, 6]}}], pose: {position: [0, 0, 4]}, mass: 1}
+cage:
+  shapes: [{name: floor, box: {size: [120, 30, 4]}, position: [0, 0, -2]}]
+loads: [{name: weight, gravity: [0, 0, -1]}]
+""")
+    vary = {"cage.shapes[0].position[2]": {"normal": {"sigma": 0.1}}}
+    results = run_study(vary, 4, scene=scene, ask=["play"])
+    (row,) = [one for one in findings_of(results).tolerances if one.name == "play_z_high"]
+    assert row.nominal == math.inf

@@ -77,7 +77,8 @@ def tolerance_rows(
     measured = columns.quantities_of(values, runner.run(values))
     rows, n_varied = [], len(nominal)
     for name, found in measured.items():
-        whole, half = (ahead - behind for ahead, behind in found[1:].reshape(2, 2, n_varied))
+        with np.errstate(invalid="ignore"):  # an end of play may be infinite all over
+            whole, half = (ahead - behind for ahead, behind in found[1:].reshape(2, 2, n_varied))
         steps = (steps_ahead + steps_back) / 2.0
         derivatives = np.divide(half, steps, out=np.zeros(n_varied), where=steps > 0.0)
         derivatives[np.abs(half) > np.maximum(SHARE_OF_JUMP * np.abs(whole), columns.resolution[name])] = np.nan
