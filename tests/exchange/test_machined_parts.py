@@ -58,8 +58,10 @@ def off_told(case: Case, name: str, done: Run) -> list[float]:
     return found
 
 
-RUNS_DOWN = 1e-6
-"""In sizes: where a motion comes to its end that friction could hold before, the place hangs on how steps are cut."""
+RUNS_DOWN, SHARED_BY_RIMS = 1e-6, {"plate with a slot and a hole on pins 2"}
+"""In sizes. The rim of its hole rubs on a floor at eight places, of which each model has its own: the ways of twin and
+facets are 1e-9 apart, and 3.3e-7 where the motion slowly comes to its end.
+"""
 
 
 def check_exactly(name: str, reader: Reader) -> None:
@@ -75,8 +77,8 @@ def check_exactly(name: str, reader: Reader) -> None:
     if case.told:
         assert np.abs(off_told(case, name, done)).max() <= allowed
     else:
-        runs_down = any(event.note == "could stay" for event in done.phases[-1].events)
-        assert apart(run_of_twin(name)[0], scene) <= (RUNS_DOWN if runs_down else EXACT)
+        differs = reader.to == "facets" and name in SHARED_BY_RIMS
+        assert apart(run_of_twin(name)[0], scene) <= (RUNS_DOWN if differs else EXACT)
 
 
 @pytest.mark.usefixtures("in_this_process")

@@ -7,14 +7,31 @@ import math
 import numpy as np
 import pytest
 
-from cagepose import Box, Cage, Cylinder, Hole, Load, Object, Pose, Scene, SceneError, Sphere, play, run
+from cagepose import (
+    Box,
+    Cage,
+    CageBody,
+    Cylinder,
+    Facets,
+    Hole,
+    Load,
+    Object,
+    Pose,
+    Scene,
+    SceneError,
+    Sphere,
+    play,
+    run,
+)
+from cagepose.model.surfaces import Surface
 from cagepose.questions.escape import EscapeEnergy, escape_energy
 from cagepose.questions.gap import CriticalGap, _bracket, critical_gap
 from cagepose.questions.plane_escape import way_out_in_plane
 from cagepose.questions.unanswered import Unanswered
 from cagepose.studies.plane_cells import Cells, State
 from cagepose.studies.plane_frame import PlaneFrame
-from cagepose.studies.plane_search import Found, WaySearch
+from cagepose.studies.plane_search import Found
+from cagepose.studies.plane_verdict import searched
 
 WEIGHT = Load("weight", gravity=(0.0, 0.0, -9.81))
 
@@ -197,8 +214,7 @@ def test_a_thin_strip_does_not_pass_through_pins_beside_it() -> None:
     scene = Scene(strip, Cage([*pins, (-0.0501, 0, 0), (0.0501, 0, 0)]), [WEIGHT], planar="xz")
     assert play(scene, search_s=0.0).verdict == "caged"
     assert way_out_in_plane(scene, 5_000) is False
-    cells = Cells(scene, frame := PlaneFrame(scene, np.zeros((1, 3)), np.zeros((1, 3))))
-    assert WaySearch(cells, [frame.start]).go_on(5_000) != Found.WAY
+    assert searched(scene, 5_000).search.found != Found.WAY
 
 
 def test_a_hole_that_stands_alone_has_no_outside() -> None:
@@ -209,3 +225,27 @@ def test_a_hole_that_stands_alone_has_no_outside() -> None:
     found = escape_energy(run(scene))
     assert isinstance(found, Unanswered)
     assert "without end" in found.unanswered
+
+
+def test_round_facets_reach_as_far_as_what_they_stand_for() -> None:
+    """Their triangles are within it; and a body of the cage has a frame of its own."""
+    rod = rod_of_facets(0.005, 8)
+    body = CageBody("post", pose=Pose((0.05, 0.0, -0.04)), shapes=[rod])
+    scene = Scene(Object([], shapes=[rod], mass_kg=1.0), Cage([], bodies=[body]), [WEIGHT], planar="xz")
+    frame = PlaneFrame(scene)
+    assert 0.005 <= frame.reach_m < 2.0 * 0.005
+    assert frame.center == pytest.approx((0.05, -0.04), abs=1e-9)
+
+
+def rod_of_facets(radius_m: float, n_sides: int) -> Facets:
+    """A rod 20 mm long along y, of flat ends and a side of triangles that stand for a cylinder."""
+    around = 2.0 * math.pi * (np.arange(n_sides) + 0.5) / n_sides
+    ring = radius_m * np.stack([np.sin(around), np.zeros(n_sides), np.cos(around)], axis=1)
+    ends = [ring + np.array((0.0, 0.01 * side, 0.0)) for side in (-1.0, 1.0)]
+    here, ahead = np.arange(n_sides), (np.arange(n_sides) + 1) % n_sides
+    side = [np.stack([here, ahead, n_sides + ahead], 1), np.stack([here, n_sides + ahead, n_sides + here], 1)]
+    fan = np.stack([np.zeros(n_sides - 2, np.int64), here[1:-1], here[2:]], 1)
+    triangles = np.concatenate([*side, fan[:, ::-1], n_sides + fan])
+    on = np.where(np.arange(len(triangles)) < 2 * n_sides, 0, -1)
+    cylinder = Surface("cylinder", (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), radius_m)
+    return Facets(np.concatenate(ends), triangles, surfaces=[cylinder], on=on, name="rod")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 from cagepose.errors import Problem, SceneError
 from cagepose.model.checks import expect_count, is_finite
@@ -82,28 +83,27 @@ def critical_gap(
     if at_first.has_other_shapes and not in_plane:
         return Unanswered("ways out are searched for boxes among points alone")
     n_tries = n_motions if n_motions is not None else N_POSES if in_plane else N_MOTIONS
-    known = dict[float, bool | None]()
     if in_plane:
 
+        @cache
         def way_out(value: float) -> bool | None:
-            if value not in known:
-                known[value] = way_out_in_plane(scene_at(value), n_tries)
-            return known[value]
+            return way_out_in_plane(scene_at(value), n_tries)
 
         caged_at, escapes_at = _bracket(way_out, tight, wide)
-        return CriticalGap(caged_at, escapes_at, len(known), n_tries, in_plane)
+        return CriticalGap(caged_at, escapes_at, way_out.cache_info().currsize, n_tries, in_plane)
+    tried = set[float]()
 
     def is_caged(value: float) -> bool:
-        known.setdefault(value)
+        tried.add(value)
         return play(scene_at(value), search_s=0.0).verdict == "caged"
 
     def gets_out(value: float) -> bool:
-        known.setdefault(value)
+        tried.add(value)
         return _gets_out(scene_at(value), n_tries)
 
     caged_at = _last(is_caged, tight, wide)
     escapes_at = _last(gets_out, wide, tight if caged_at is None else caged_at)
-    return CriticalGap(caged_at, escapes_at, len(known), n_tries, in_plane)
+    return CriticalGap(caged_at, escapes_at, len(tried), n_tries, in_plane)
 
 
 def _bracket(way_out: Callable[[float], bool | None], tight: float, wide: float) -> tuple[float | None, float | None]:

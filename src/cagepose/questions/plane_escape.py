@@ -6,8 +6,6 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-import numpy as np
-
 from cagepose.model.checks import FloatArray
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
@@ -16,6 +14,7 @@ from cagepose.studies.plane_cells import Cell, Cells
 from cagepose.studies.plane_frame import PlaneFrame
 from cagepose.studies.plane_lift import lifted
 from cagepose.studies.plane_search import Found, WaySearch
+from cagepose.studies.plane_verdict import searched
 from cagepose.studies.plane_way import way_of
 from cagepose.studies.play import play
 
@@ -32,10 +31,7 @@ def way_out_in_plane(scene: Scene, n_poses: int) -> bool | None:
     """Return whether there is a way out; None: it was not found out by asking at so many poses."""
     if play(scene, search_s=0.0).verdict == "caged":
         return False
-    frame = PlaneFrame(scene, np.zeros((1, 3)), np.zeros((1, 3)))
-    cells = Cells(scene, frame)
-    lift = lifted(cells)
-    found = WaySearch(cells, [frame.start] if lift is None else [frame.start, lift.end]).go_on(n_poses)
+    found = searched(scene, n_poses).search.found
     return None if found == Found.UNDECIDED else found == Found.WAY
 
 
@@ -65,12 +61,11 @@ def least_work_in_plane(
     cells, level_j = Cells(scene, frame), frame.potential(frame.start)
     levels_j = LEVEL * frame.load * scene.size_m
     lift = lifted(cells)
-    starts = [frame.start] if lift is None else [frame.start, lift.end]
     lift_j = 0.0 if lift is None else max(frame.potential(lift.end) - level_j, 0.0)
     at_least_j, at_most_j, cap_j = 0.0, math.inf, math.inf
     best, n_ways = list[Cell](), 0
     while cells.n_asked < n_poses:
-        search = WaySearch(cells, starts, cap_j)
+        search = WaySearch(cells, lift, cap_j)
         found = search.go_on(n_poses, progress)
         if found == Found.NONE:
             at_least_j = cap_j - level_j

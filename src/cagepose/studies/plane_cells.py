@@ -18,8 +18,6 @@ from cagepose.runs.driven_cage import CageAt
 from cagepose.studies.plane_frame import Block, InPlane, PlaneFrame
 from cagepose.studies.touching import PlacesOfContact, TouchFinder
 
-MOST_GAPS = 10
-"""That there is memory for, where one is asked."""
 AT_FIRST = 8
 """Cells along each axis before any is divided."""
 
@@ -70,7 +68,7 @@ class Cells:
         geometry = scene.geometry
         n_bodies = len(geometry.cage.first_nodes) - 1
         self._overlaps = Slots(empty_overlap_work(geometry.held, geometry.cage.own, n_bodies))
-        self._found = empty_gap_work(MOST_GAPS)
+        self._found = empty_gap_work(1)
         self._gaps = Slots(self._found)
         self._states, self._divided = dict[Cell, State](), set[Cell]()
 
@@ -105,9 +103,6 @@ class Cells:
         if found is None:
             found = self._states[cell] = self._asked(cell)
         return found
-
-    def is_asked(self, cell: Cell) -> bool:
-        return cell in self._states
 
     def is_divided(self, cell: Cell) -> bool:
         return cell in self._divided

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.vector import Vector
-from cagepose.kernels.boundary.features import Boundary
+from cagepose.kernels.algebra.pose import Quaternion, quaternion_about, quaternion_product
+from cagepose.kernels.algebra.vector import Vector, vector_from
+from cagepose.model.boundary.features import boundary_of
 from cagepose.model.checks import FloatArray
 from cagepose.model.facets import Facets
 from cagepose.model.planar import normal_axis
@@ -22,6 +22,7 @@ N_WAYS = 256
 """Directions in the plane along which it is asked how far parts reach."""
 BEYOND = 1.0 / math.cos(math.pi / N_WAYS)
 """Nothing reaches farther between two of them, times that along them."""
+NO_FORCES = np.zeros((0, 3))
 
 
 class InPlane(NamedTuple):
@@ -59,20 +60,21 @@ class PlaneFrame:
         Where the object's middle is farther than ``outside_m`` from there, (2,), nothing of the cage is in its reach.
     """
 
-    def __init__(self, scene: Scene, forces: FloatArray, points_object: FloatArray) -> None:
-        """``forces`` (n, 3) act at points (n, 3) of the object and keep their direction."""
+    def __init__(self, scene: Scene, forces: FloatArray = NO_FORCES, points_object: FloatArray = NO_FORCES) -> None:
+        """``forces`` (n, 3) act at points (n, 3) of the object and keep their direction; left out: nothing acts."""
         assert scene.planar is not None
         self._normal = normal_axis(scene.planar)
         self.axes = [axis for axis in range(3) if axis != self._normal]
+        self._turn_axis = vector_from(self.normal)
         self._sense = -1.0 if self._normal == 1 else 1.0  # about y, z turns toward x
         held, cage = scene.object, scene.cage
         pose = held.pose_world_object
         around, ways = np.linspace(0.0, 2.0 * math.pi, N_WAYS, endpoint=False), np.zeros((N_WAYS, 3))
         ways[:, self.axes] = np.stack([np.cos(around), np.sin(around)], axis=1)
-        heights = _heights(held.parts, scene.geometry.held, ways @ pose.rotation)
+        heights = _heights(held.parts, scene.touch_m, ways @ pose.rotation)
         self._arm, self.reach_m = _circle_around(ways, heights)
         at = cage.pose_world_cage
-        heights = _heights(cage.shapes, scene.geometry.cage.own, ways @ at.rotation)
+        heights = _heights(cage.shapes, scene.touch_m, ways @ at.rotation)
         heights = np.maximum(heights, (ways @ at.rotation @ cage.points_cage.T).max(axis=1, initial=-np.inf))
         center, radius_m = _circle_around(ways, heights + ways @ at.position_m)
         self.center, self.outside_m = center[self.axes], radius_m + self.reach_m
@@ -96,14 +98,7 @@ class PlaneFrame:
         position[self.axes[0]] = at.u - (cosine * a - sine * b)
         position[self.axes[1]] = at.v - (sine * a + cosine * b)
         position[self._normal] = self._level - float(self._arm[self._normal])
-        half, c = math.sin(0.5 * at.turn), math.cos(0.5 * at.turn)
-        w, x, y, z = self._quaternion
-        if self._normal == 0:
-            turned = (c * w - half * x, c * x + half * w, c * y - half * z, c * z + half * y)
-        elif self._normal == 1:
-            turned = (c * w - half * y, c * x + half * z, c * y + half * w, c * z - half * x)
-        else:
-            turned = (c * w - half * z, c * x - half * y, c * y + half * x, c * z + half * w)
+        turned = quaternion_product(quaternion_about(self._turn_axis, at.turn), self._quaternion)
         return (position[0], position[1], position[2]), turned
 
     def pose(self, at: InPlane) -> Pose:
@@ -113,11 +108,6 @@ class PlaneFrame:
         """Return how far any point of the object moves at most, from the middle of a block to a pose of it, metres."""
         turned = 2.0 * self.reach_m * math.sin(min(0.5 * block.half_rad, 0.5 * math.pi))
         return math.sqrt(2.0) * block.half_m + turned
-
-    def apart(self, one: InPlane, other: InPlane) -> float:
-        """Return how far any point of the object is at one pose from where it is at another, at most, metres."""
-        turn = abs((one.turn - other.turn + math.pi) % (2.0 * math.pi) - math.pi)
-        return math.hypot(one.u - other.u, one.v - other.v) + 2.0 * self.reach_m * math.sin(0.5 * turn)
 
     def may_be_outside(self, block: Block) -> bool:
         """Whether a pose of a block is out of reach of the cage."""
@@ -183,17 +173,22 @@ def nearest_in(block: Block, at: InPlane) -> InPlane:
     )
 
 
-def _heights(parts: Sequence[Shape], boundary: Boundary, ways: FloatArray) -> FloatArray:
-    """Return how far parts reach along directions (n, 3) of their body's frame, metres: round ones of triangles as far
-    as the boxes around their features.
+def _heights(parts: Sequence[Shape], touch_m: float, ways: FloatArray) -> FloatArray:
+    """Return how far parts reach along directions (n, 3) of their body's frame, metres."""
+    found: FloatArray = np.max([_height(part, touch_m, ways) for part in parts], axis=0, initial=-np.inf)
+    return found
+
+
+def _height(part: Shape, touch_m: float, ways: FloatArray) -> FloatArray:
+    """As `_heights`, of one part: of a round one of triangles, which are within it, as far as the boxes around its
+    features.
     """
-    if not any(isinstance(part, Facets) and part.is_round for part in parts):
-        highest: FloatArray = np.max([part.heights_m(ways) for part in parts], axis=0, initial=-np.inf)
-        return highest
-    boxes = np.asarray(boundary.nodes)
+    if not isinstance(part, Facets) or not part.is_round:
+        return part.heights_m(ways)
+    boxes = np.asarray(boundary_of((part,), touch_m).nodes)
     boxes = boxes[(boxes["left"] < 0) & (boxes["first"] < boxes["last"])]
-    heights: FloatArray = (ways @ boxes["middle"].T + np.abs(ways) @ boxes["half"].T).max(axis=1)
-    return heights
+    found: FloatArray = (ways @ boxes["middle"].T + np.abs(ways) @ boxes["half"].T).max(axis=1)
+    return found
 
 
 def _circle_around(ways: FloatArray, heights: FloatArray) -> tuple[FloatArray, float]:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from enum import Enum
 from itertools import count
 from typing import NamedTuple
 
 from cagepose.studies.plane_cells import Cell, Cells, State
-from cagepose.studies.plane_frame import InPlane
+from cagepose.studies.plane_lift import Lift
 
 BETWEEN_TELLING = 500
 """Poses, a tenth of a second."""
@@ -47,8 +47,8 @@ class Label(NamedTuple):
 
 
 class WaySearch:
-    """Looks for a way from one of some poses, between which the object can go, to where nothing is in its reach, with
-    no pose on it above a cap of the potential.
+    """Looks for a way from the start, or from where the object is lifted off what it touches there, to where nothing is
+    in its reach, with no pose on it above a cap of the potential.
 
     Of all ways through cells that are not blocked, or above the cap, one with the fewest cells that are not known to be
     free is looked for, and the widest of these are divided: until there is a way through free cells, or none is left.
@@ -62,8 +62,9 @@ class WaySearch:
         The cells of a way out that was found.
     """
 
-    def __init__(self, cells: Cells, starts: Sequence[InPlane], cap_j: float = math.inf) -> None:
-        self._cells, self._frame, self._starts, self._cap_j = cells, cells.frame, starts, cap_j
+    def __init__(self, cells: Cells, lift: Lift | None, cap_j: float = math.inf) -> None:
+        self._cells, self._frame, self._cap_j = cells, cells.frame, cap_j
+        self._starts = [cells.frame.start] if lift is None else [cells.frame.start, lift.end]
         self._reached, self._followers = dict[Cell, Label](), dict[Cell, set[Cell]]()
         self._waiting = list[tuple[int, float, float, int, Cell, Cell | None]]()
         self._facts, self._tie = dict[Cell, Known](), count()

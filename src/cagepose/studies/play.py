@@ -129,8 +129,8 @@ def _of_shapes(scene: Scene, held: FloatArray, shifts: Shifts, search_s: float, 
     in_plane = scene.planar is not None and (held == held_freedoms(scene.planar)).all() and not has_endless_holes(scene)
 
     def judged(why_not: str, leaves_at: Pose | None) -> CageVerdict:
-        if in_plane and pushed.escape is None:
-            return judge_in_plane(scene, why_not, leaves_at, pushed.free_directions(), search_s > 0.0, progress)
+        if in_plane and pushed.escape is None and search_s > 0.0:
+            return judge_in_plane(scene, why_not, leaves_at, pushed.free_directions(), progress)
         return pushed.judge(why_not, leaves_at, search_s, progress)
 
     if inner is None:

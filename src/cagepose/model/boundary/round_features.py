@@ -87,8 +87,10 @@ def _facets_at_ends(surface: ExactSurface, curve: Curve, region: int) -> Iterato
 
 def _rise(surface: ExactSurface, curve: Curve) -> float:
     """Return the greatest angle under which an arc is seen above flat facets beside it, radians: over these a part tips
-    onto it before they lie flat.
+    onto it before they lie flat. All around a circle it is not told.
     """
+    if curve.is_closed:
+        return 0.0
     start, end = surface.vertices_m[curve.nodes[0]], surface.vertices_m[curve.nodes[-1]]
     found = 0.0
     for side in (int(curve.sides[0]), int(surface.twins[curve.sides[0]])):
