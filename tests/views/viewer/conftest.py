@@ -32,10 +32,18 @@ class Watched:
     def __init__(self, page: Page) -> None:
         self.page = page
         self.complaints: list[str] = []
+        self.expected: list[str] = []
         self.requests: list[str] = []
         page.on("console", lambda message: self.complaints.append(message.text) if message.type == "error" else None)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("request", lambda request: self.requests.append(request.url))
+
+    def expect(self, words: str) -> None:
+        """Take what the browser itself says in these words for no complaint, whenever it says it."""
+        self.expected.append(words)
+
+    def unexpected(self) -> list[str]:
+        return [text for text in self.complaints if not any(words in text for words in self.expected)]
 
 
 @pytest.fixture
@@ -45,7 +53,7 @@ def watched(browser: Browser) -> Iterator[Watched]:
     watched = Watched(context.new_page())
     yield watched
     context.close()
-    assert watched.complaints == []
+    assert watched.unexpected() == []
 
 
 @pytest.fixture(scope="session")

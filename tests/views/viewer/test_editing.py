@@ -110,7 +110,7 @@ def test_a_mistake_is_told_at_its_line_and_the_last_good_picture_stays(watched: 
     assert "The picture shows the last scene that could be run" in over
     assert sheet.locator(".cm-lintRange-error").count() == 1
     assert shown_angles(sheet) == before
-    watched.complaints.clear()  # the browser notes the refusal itself
+    watched.expect("status of 422")
     sheet.keyboard.press("Control+z")
     wait_until(sheet, "problems.hidden && cagepose.state().drawnAnswers === 1")
     assert sheet.locator(".cm-lintRange-error").count() == 0
@@ -132,7 +132,7 @@ def test_keys_and_words_are_completed_and_told_from_the_schema(watched: Any, she
     sheet.keyboard.press("Enter")
     wait_until(sheet, "cagepose.text().endsWith('method: stepwise')")
     wait_until(sheet, "method.innerText.startsWith('stepwise')")
-    watched.complaints.clear()  # of half a word
+    watched.expect("status of 422")  # of half a word
 
 
 def test_inside_of_a_mapping_its_own_keys_are_offered_and_not_those_that_are_there(watched: Any, sheet: Page) -> None:
@@ -142,7 +142,7 @@ def test_inside_of_a_mapping_its_own_keys_are_offered_and_not_those_that_are_the
     sheet.locator(".cm-tooltip-autocomplete li").first.wait_for()
     assert sorted(sheet.locator(".cm-tooltip-autocomplete .cm-completionLabel").all_inner_texts()) == ["euler_zyx_deg"]
     sheet.keyboard.press("Escape")
-    watched.complaints.clear()  # of half a mapping
+    watched.expect("status of 422")  # of half a mapping
 
 
 def test_a_key_tells_what_it_means(sheet: Page) -> None:
@@ -261,7 +261,7 @@ def test_a_mistake_from_outside_is_told_with_its_line_where_the_text_is_closed(
     assert f"line {line}: laods: is no known key; did you mean loads?" in page.locator("#problems").inner_text()
     scene.write_text(TEXT, encoding="utf-8")
     wait_until(page, "problems.hidden")
-    watched.complaints.clear()  # the browser notes the refusal itself
+    watched.expect("status of 422")
 
 
 def test_a_file_of_points_that_is_written_anew_is_run(watched: Any, tmp_path: Path) -> None:
@@ -316,7 +316,7 @@ def test_nothing_is_saved_over_another_text_before_somebody_has_chosen(watched: 
     with sheet.expect_response("**/save") as answer:
         sheet.get_by_role("button", name="save", exact=True).click()
     assert answer.value.status == 422
-    watched.complaints.clear()  # the browser notes the refusal itself
+    watched.expect("status of 422")
     assert scene.read_text(encoding="utf-8") == theirs
     keep.click()  # it is asked again
     sheet.get_by_role("button", name="save", exact=True).click()
@@ -375,7 +375,7 @@ def test_save_as_makes_another_file_or_a_download(watched: Any, sheet: Page, sce
     name.fill("rail")
     name.press("Enter")
     wait_until(sheet, "document.querySelector('#text .news').innerText.includes('rail.yaml is there already')")
-    watched.complaints.clear()  # the browser notes the refusal itself
+    watched.expect("status of 422")
     sheet.get_by_role("button", name="another name").click()
     name.fill("mine")
     name.press("Enter")
@@ -410,7 +410,7 @@ def test_markup_in_a_text_stays_text(watched: Any, scene: Path) -> None:
         wait_until(page, "!problems.hidden")
         assert "<script>alert(2)" in page.locator("#text .mistakes").inner_text()
         assert page.locator("#text img, #text .mistakes script").count() == 0
-        watched.complaints.clear()  # the browser notes the refusal itself
+        watched.expect("status of 422")
 
 
 def test_only_a_served_page_carries_the_editor(server: ViewServer) -> None:

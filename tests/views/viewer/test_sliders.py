@@ -223,7 +223,7 @@ def test_the_sliders_of_the_rail_are_green_from_end_to_end_and_nothing_jumps(wat
         page.locator("#controls input[type=number]").nth(15).fill("")  # no number is a value that cannot be
         wait_until(page, "!problems.hidden")
         assert page.locator("#controls").bounding_box() == place
-        watched.complaints.clear()  # the browser notes the refusal itself
+        watched.expect("status of 422")
 
 
 def test_the_start_goes_with_the_cage_and_a_saved_scene_runs_to_the_same_end(tmp_path):

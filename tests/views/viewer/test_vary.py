@@ -135,4 +135,4 @@ def test_a_study_of_a_text_with_mistakes_says_so(watched: Any, asked: Page) -> N
     begin(asked, 0.05, 32)
     wait_until(asked, f"{TOLD}.includes('frict: is no known key')")
     assert asked.locator("#text .varied canvas").is_hidden()
-    watched.complaints.clear()  # the browser notes the refusal itself
+    watched.expect("status of 422")
