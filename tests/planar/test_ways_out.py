@@ -11,6 +11,9 @@ from cagepose import (
     Box,
     Cage,
     CageBody,
+    Chamfer,
+    Cone,
+    Convex,
     Cylinder,
     Facets,
     Hole,
@@ -31,19 +34,20 @@ from cagepose.questions.unanswered import Unanswered
 from cagepose.studies.plane_cells import Cells, State
 from cagepose.studies.plane_frame import PlaneFrame
 from cagepose.studies.plane_search import Found
+from cagepose.studies.plane_thick import thickened
 from cagepose.studies.plane_verdict import searched
 
 WEIGHT = Load("weight", gravity=(0.0, 0.0, -9.81))
 
 
-def letter_h(gap_m: float) -> Scene:
+def letter_h(gap_m: float, thick_m: float = 0.02) -> Scene:
     """An H of bars 10 mm wide, 50 mm by 40 mm, with a finger in each of its notches: as these leave, one is at the
     outer corner of a flange, the other still in the notch, 25 mm below it and 10 mm inward.
     """
     bars = [
-        Box((0.03, 0.02, 0.01)),
-        Box((0.01, 0.02, 0.04), Pose((-0.02, 0, 0))),
-        Box((0.01, 0.02, 0.04), Pose((0.02, 0, 0))),
+        Box((0.03, thick_m, 0.01)),
+        Box((0.01, thick_m, 0.04), Pose((-0.02, 0, 0))),
+        Box((0.01, thick_m, 0.04), Pose((0.02, 0, 0))),
     ]
     fingers = [(0, 0, gap_m / 2), (0, 0, -gap_m / 2)]
     return Scene(Object(bars, mass_kg=1.0), Cage(fingers), [WEIGHT], planar="xz")
@@ -59,11 +63,15 @@ def in_a_well(rim_m: float, shape: Box | Sphere | Cylinder, half_m: float, play_
     return Scene(Object([], shapes=[shape], mass_kg=2.0), Cage([], shapes=[floor, *walls]), [WEIGHT], planar="xz")
 
 
-@pytest.mark.parametrize(("gap_mm", "is_out"), [(22.0, False), (30.0, True)])
-def test_an_h_leaves_two_fingers_from_their_diagonal_on(gap_mm: float, is_out: bool) -> None:
-    """From 26.926 mm on. It is held by large turns alone: of the linearised gaps nothing limits it."""
+@pytest.mark.parametrize(
+    ("gap_mm", "thick_mm", "is_out"), [(22.0, 20.0, False), (22.0, 1.0, False), (30.0, 20.0, True)]
+)
+def test_an_h_leaves_two_fingers_from_their_diagonal_on(gap_mm: float, thick_mm: float, is_out: bool) -> None:
+    """From 26.926 mm on. It is held by large turns alone: of the linearised gaps nothing limits it. How thick it is
+    across the plane changes nothing.
+    """
     assert math.hypot(25.0, 10.0) == pytest.approx(26.926, abs=1e-3)
-    assert way_out_in_plane(letter_h(1e-3 * gap_mm), 80_000) is is_out
+    assert way_out_in_plane(letter_h(1e-3 * gap_mm, 1e-3 * thick_mm), 80_000) is is_out
 
 
 def test_play_in_the_plane_proves_what_the_linearised_gaps_do_not() -> None:
@@ -152,9 +160,7 @@ def test_the_way_is_free_of_contact_and_no_higher_than_told() -> None:
 
 
 def test_states_of_cells_are_those_of_poses_in_them(cases) -> None:
-    """Plates of two boxes and a ball among points and pins: every pose of a blocked cell is in the cage, none of a free
-    one is.
-    """
+    """Plates of two boxes and a ball among points and pins."""
     rng, counts = np.random.default_rng(7), dict.fromkeys(State, 0)
     for _ in range(cases(3, 60)):
         parts = [
@@ -169,24 +175,63 @@ def test_states_of_cells_are_those_of_poses_in_them(cases) -> None:
         planar = ("xz", "xy", "yz")[int(rng.integers(3))]
         held = Object([], shapes=parts, pose=Pose((0, 0, 0.09)), mass_kg=1.0)
         scene = Scene(held, Cage([(0.0, 0.0, -0.04)], shapes=pins), [WEIGHT], planar=planar)
-        frame = PlaneFrame(scene, np.array([[0.0, 0.0, -1.0]]), np.zeros((1, 3)))
-        cells = Cells(scene, frame)
-        for _ in range(60):
-            cell = (int(level := rng.integers(0, 4)), *(int(x) for x in rng.integers(0, 8 << level, 3)))
-            state, block = cells.state(cell), cells.block(cell)
-            counts[state] += 1
-            for _ in range(4):
-                at = block.middle._replace(
-                    u=block.middle.u + rng.uniform(-1, 1) * block.half_m,
-                    v=block.middle.v + rng.uniform(-1, 1) * block.half_m,
-                    turn=block.middle.turn + rng.uniform(-1, 1) * block.half_rad,
-                )
-                least, greatest = frame.potentials(block)
-                assert least - 1e-12 <= frame.potential(at) <= greatest + 1e-12
-                if state != State.OPEN:
-                    assert is_free(scene, frame.pose(at)) is (state == State.FREE)
+        assert thickened(scene) is scene  # it has balls
+        check_states(scene, rng, counts)
     assert counts[State.BLOCKED] > 0
     assert counts[State.FREE] > 10
+
+
+ACROSS = Pose(euler_zyx=(0, 0, -math.pi / 2)).quaternion_wxyz
+"""A shape's z along y of its body."""
+
+
+def test_thin_parts_have_the_same_poses_stretched_across_the_plane(cases) -> None:
+    """Sheets one to two millimetres thick, with one of each shape that can be stretched, in cages that are turned."""
+    rng, counts = np.random.default_rng(8), dict.fromkeys(State, 0)
+    for _ in range(cases(3, 60)):
+        thick, turn = rng.uniform(0.001, 0.002), Pose(euler_zyx=(0, rng.uniform(-3, 3), 0))
+        corners = rng.uniform(-0.015, 0.015, (8, 3)) * (1, 0.0, 1) + np.array(
+            [[0, side * thick, 0] for side in (-1, 1)] * 4
+        )
+        hole = Hole(0.004, thick, Chamfer(0.001, 1.0), ["sheet"], Pose((0.01, thick / 2, 0.0), ACROSS))
+        parts = [
+            Box((0.03, thick, 0.02), Pose(), "sheet"),
+            Convex(corners, pose_body_shape=Pose((-0.02, 0.0002, 0))),
+            Box((0.02, thick, 0.005), Pose((0, 0, 0.015), euler_zyx=(0.3, 0.5, 0.2))),
+        ]
+        pins = [
+            Cylinder(0.002, 0.005, Pose((0.05, 0.0005, 0.0), ACROSS)),
+            Cone(0.006, 0.004, 0.006, Pose((-0.04, 0, 0.01), ACROSS)),
+            rod_of_facets(0.005, 8, is_round=False).moved(Pose((0.0, 0.01 * rng.uniform(-1, 1), -0.06))),
+            Cylinder(0.02, 0.01, Pose((0.0, 0.02, 0.0), ACROSS)),  # beside the plane
+        ]
+        held = Object([], shapes=parts, holes=[hole], pose=Pose((0, 0.003, 0.09), turn.quaternion_wxyz), mass_kg=1.0)
+        cage = Cage([(0.0, 0.003, -0.04)], shapes=pins, pose=Pose((0.01, 0.003, 0), turn.quaternion_wxyz))
+        scene = Scene(held, cage, [WEIGHT], planar="xz")
+        assert thickened(scene).object.parts[0].size_m[1] > 0.03
+        check_states(scene, rng, counts)
+    assert counts[State.BLOCKED] > 0
+    assert counts[State.FREE] > 10
+
+
+def check_states(scene: Scene, rng: np.random.Generator, counts: dict[State, int]) -> None:
+    """Every pose of a blocked cell is in the cage, none of a free one is."""
+    frame = PlaneFrame(scene, np.array([[0.0, 0.0, -1.0]]), np.zeros((1, 3)))
+    cells = Cells(scene, frame)
+    for _ in range(60):
+        cell = (int(level := rng.integers(0, 4)), *(int(x) for x in rng.integers(0, 8 << level, 3)))
+        state, block = cells.state(cell), cells.block(cell)
+        counts[state] += 1
+        for _ in range(4):
+            at = block.middle._replace(
+                u=block.middle.u + rng.uniform(-1, 1) * block.half_m,
+                v=block.middle.v + rng.uniform(-1, 1) * block.half_m,
+                turn=block.middle.turn + rng.uniform(-1, 1) * block.half_rad,
+            )
+            least, greatest = frame.potentials(block)
+            assert least - 1e-12 <= frame.potential(at) <= greatest + 1e-12
+            if state != State.OPEN:
+                assert is_free(scene, frame.pose(at)) is (state == State.FREE)
 
 
 def is_free(scene: Scene, pose: Pose) -> bool:
@@ -237,7 +282,7 @@ def test_round_facets_reach_as_far_as_what_they_stand_for() -> None:
     assert frame.center == pytest.approx((0.05, -0.04), abs=1e-9)
 
 
-def rod_of_facets(radius_m: float, n_sides: int) -> Facets:
+def rod_of_facets(radius_m: float, n_sides: int, is_round: bool = True) -> Facets:
     """A rod 20 mm long along y, of flat ends and a side of triangles that stand for a cylinder."""
     around = 2.0 * math.pi * (np.arange(n_sides) + 0.5) / n_sides
     ring = radius_m * np.stack([np.sin(around), np.zeros(n_sides), np.cos(around)], axis=1)
@@ -248,4 +293,5 @@ def rod_of_facets(radius_m: float, n_sides: int) -> Facets:
     triangles = np.concatenate([*side, fan[:, ::-1], n_sides + fan])
     on = np.where(np.arange(len(triangles)) < 2 * n_sides, 0, -1)
     cylinder = Surface("cylinder", (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), radius_m)
-    return Facets(np.concatenate(ends), triangles, surfaces=[cylinder], on=on, name="rod")
+    surfaces, of = ([cylinder], on) if is_round else ([], ())
+    return Facets(np.concatenate(ends), triangles, surfaces=surfaces, on=of, name="rod")

@@ -16,6 +16,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.runs.driven_cage import CageAt
 from cagepose.studies.plane_frame import Block, InPlane, PlaneFrame
+from cagepose.studies.plane_thick import thickened
 from cagepose.studies.touching import PlacesOfContact, TouchFinder
 
 AT_FIRST = 8
@@ -63,6 +64,7 @@ class Cells:
 
     def __init__(self, scene: Scene, frame: PlaneFrame) -> None:
         self.frame, self.n_asked = frame, 0
+        scene = thickened(scene)
         self._touches = TouchFinder(scene)
         self._scene, self._cage = scene, CageAt(scene.cage, (Pose(),) * (1 + len(scene.cage.bodies)))
         geometry = scene.geometry
