@@ -7,6 +7,7 @@ from typing import TypeVar, cast
 
 import numpy as np
 
+from cagepose.errors import SceneError
 from cagepose.model.cage import Cage
 from cagepose.model.checks import FloatArray
 from cagepose.model.parts import Object
@@ -35,15 +36,17 @@ def thickened(scene: Scene) -> Scene:
     level_m = float(held.pose_world_object.position_m @ normal)
     in_object = _in_body(held.pose_world_object, normal, level_m, times)
     in_cage = _in_body(cage.pose_world_cage, normal, level_m, times)
-    parts, shapes = _all_stretched(held.parts, in_object), _all_stretched(cage.shapes, in_cage)
-    holes, cage_holes = _all_stretched(held.holes, in_object), _all_stretched(cage.holes, in_cage)
-    if parts is None or shapes is None or holes is None or cage_holes is None:
+    try:
+        parts, shapes = _all_stretched(held.parts, in_object), _all_stretched(cage.shapes, in_cage)
+        holes, cage_holes = _all_stretched(held.holes, in_object), _all_stretched(cage.holes, in_cage)
+        if parts is None or shapes is None or holes is None or cage_holes is None:
+            return scene
+        points, center = in_cage.moved(cage.points_cage), held.center_of_gravity_m
+        thick = Object(center_of_gravity_m=center, shapes=parts, holes=holes, pose=held.pose_world_object)
+        around = Cage(points, cage.names, cage.pose_world_cage, shapes=shapes, holes=cage_holes)
+        return scene.but_for(object=thick, cage=around)
+    except SceneError:  # it is nearly none already
         return scene
-    points = in_cage.moved(cage.points_cage)
-    thick = Object(center_of_gravity_m=held.center_of_gravity_m, shapes=parts, holes=holes, pose=held.pose_world_object)
-    return scene.but_for(
-        object=thick, cage=Cage(points, cage.names, cage.pose_world_cage, shapes=shapes, holes=cage_holes)
-    )
 
 
 def _times(scene: Scene, normal: FloatArray) -> float:
