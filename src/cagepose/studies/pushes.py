@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from cagepose.kernels.algebra.pose import quaternion_product, write_euler_zyx
 from cagepose.kernels.algebra.record import Rows, dtype_of
 from cagepose.kernels.contact.loads import CARDAN_MOMENT, DEAD_FORCE, Action, PhaseLoad, acting
 from cagepose.kernels.driven.workspace import empty_drive_workspace
@@ -32,6 +33,7 @@ TURNS_ON = 0.5
 STEEPEST, TURN = 1.55, 2.0 * np.pi
 """Radians. Pitch beyond is next to the pole of the angles; what is pushed there, or all around, has no end."""
 YAW, PITCH, ROLL = range(3)
+UNITS = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,9 +143,12 @@ class Pushes:
         self._center, self._units = scene.object.center_of_gravity_m, (unit_n, unit_nm)
         self.is_seated = len(seat) > 0
         self._actions = np.concatenate([np.zeros(1, dtype_of(Action)), seat])
+        self._to_cage = _between(self._cage.inverse(), start.inverse() @ self._cage)
         cases = cases_of(scene, 0.0, None, displaced)
         self._run = REGISTRY["quasistatic"].run
-        self._cases = cases._replace(
+        cases = cases._replace(
+            object_positions=cases.object_positions.copy(),
+            object_quaternions=cases.object_quaternions.copy(),
             point_frictions=np.full_like(cases.point_frictions, np.nan),
             box_frictions=np.full_like(cases.box_frictions, np.nan),
             drives=no_drives(scene),
@@ -156,8 +161,8 @@ class Pushes:
         if held is not None:
             part.body.held[:] = held
         self.held = part.body.held.copy()
-        self._part, self._rules, self._work = Slots(part), Slots(rules), Slots(work)
-        self._written = Slots(self._outcome)
+        self._begins = cases.object_positions[0], cases.object_quaternions[0]
+        self._arguments = [Slots(argument) for argument in (part, cases, rules, work, self._outcome)]
         self.n_steps = 0
 
     def push(self, freedom: Freedom, sign: float, start: Pose) -> Pushed:
@@ -182,10 +187,8 @@ class Pushes:
         return self._let_go(self.start, None)
 
     def _let_go(self, start: Pose, angle: int | None) -> Pushed:
-        cases = self._cases._replace(
-            object_positions=start.position_m[None].copy(), object_quaternions=start.quaternion_wxyz[None].copy()
-        )
-        self._run(self._part, Slots(cases), self._rules, self._work, self._written)
+        self._begins[0][:], self._begins[1][:] = start.position_m, start.quaternion_wxyz
+        self._run(*self._arguments)
         _, _, n_steps, n_contacts = self._outcome.counts.tolist()
         self.n_steps += n_steps
         contacts, poses = cast(Any, self._outcome.contacts), self._outcome.path[:n_steps].copy()
@@ -201,21 +204,24 @@ class Pushes:
 
     def _pass_pole(self, angle: int, start: Pose, poses: FloatArray) -> bool:
         """Whether an angle turns all around along poses, (n, 7), or the pitch comes to the pole at one of them."""
-        is_steep = any(abs(self._turn(_pose(row)).euler_zyx[PITCH]) > STEEPEST for row in poses)
-        return is_steep or abs(self._turned(angle, start, poses)) > TURN
+        is_steep = (np.abs(self._angles(poses)[:, PITCH]) > STEEPEST).any()
+        return bool(is_steep) or abs(self._turned(angle, start, poses)) > TURN
 
     def _turned(self, angle: int, start: Pose, poses: FloatArray) -> float:
         """Return how far an angle turns from a start along poses, (n, 7)."""
-        return _unwound([self._turn(pose).euler_zyx[angle] for pose in (start, *map(_pose, poses))])
+        return _unwound(self._angles(np.concatenate([_row(start), poses]))[:, angle])
 
-    def _turn(self, pose: Pose) -> Pose:
-        return self._cage.inverse() @ pose @ self.start.inverse() @ self._cage
+    def _angles(self, poses: FloatArray) -> FloatArray:
+        """Return yaw, pitch and roll of poses (n, 7) in the cage's axes, from the start, (n, 3), radians."""
+        found = np.zeros((len(poses), 3))
+        write_euler_zyx(poses[:, 3:] @ self._to_cage, found)
+        return found
 
     def value(self, freedom: Freedom, chain: Sequence[Pushed]) -> float:
         """Return how far pushes, one after the other, led from the start: metres, or radians with all turns around."""
         if freedom.angle is not None:
-            poses = [pushed.pose_after(number + 1) for pushed in chain for number in range(len(pushed.poses))]
-            return _unwound([0.0, *(self._turn(pose).euler_zyx[freedom.angle] for pose in poses)])
+            poses = np.concatenate([_row(self.start), *(pushed.poses for pushed in chain)])
+            return _unwound(self._angles(poses)[:, freedom.angle])
         pose = chain[-1].pose
         way = pose.transform(freedom.at_object_m) - self.start.transform(freedom.at_object_m)
         return float(self._cage.rotation @ freedom.direction_cage @ way)
@@ -248,7 +254,17 @@ def _pose(row: FloatArray) -> Pose:
     return Pose.from_unit(row[:3], row[3:])
 
 
-def _unwound(angles: Sequence[float]) -> float:
+def _row(pose: Pose) -> FloatArray:
+    return np.concatenate([pose.position_m, pose.quaternion_wxyz])[None]
+
+
+def _between(left: Pose, right: Pose) -> FloatArray:
+    """Return the matrix (4, 4) that makes quaternions of poses, as rows, those of the poses between two others."""
+    before, after = left.as_tuples()[1], right.as_tuples()[1]
+    return np.array([quaternion_product(quaternion_product(before, as_unit), after) for as_unit in UNITS])
+
+
+def _unwound(angles: FloatArray) -> float:
     """Return how far angles turn from the first to the last, each less than half a turn from the one before."""
-    steps = np.diff(np.array(angles))
+    steps = np.diff(angles)
     return float((steps - TURN * np.round(steps / TURN)).sum())
