@@ -8,6 +8,7 @@ import pytest
 
 from cagepose.cli.app import main
 from cagepose.cli.ask_command import QUESTIONS
+from our_scenes import SCENES
 
 
 @pytest.mark.parametrize("arguments", [["ask"], ["ask", "--help"]])
@@ -29,6 +30,11 @@ def test_every_question_has_its_help(name: str, capsys: pytest.CaptureFixture[st
 def test_an_unknown_question_ends_with_2_and_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["ask", "fricton"]) == 2
     assert capsys.readouterr().err.startswith('cagepose: Unknown command "fricton". Did you mean "friction"?')
+
+
+def test_a_number_that_cannot_be_is_told_with_its_option(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["ask", "escape", str(SCENES / "pendulum.yaml"), "--motions", "0"]) == 2
+    assert capsys.readouterr().err.startswith('cagepose: Invalid value "0" for --motions. Must be >= 1.')
 
 
 def test_the_shell_completes_every_question(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from cyclopts import Parameter
+from cyclopts.validators import Number
 
 from cagepose.cli.asked import JsonOption, PhaseOption, run_asked
 from cagepose.cli.options import SceneArgument, SetOption
@@ -18,6 +19,7 @@ def ask_escape(
     motions: Annotated[
         int | None,
         Parameter(
+            validator=Number(gte=1),
             help="How many motions the search for a way out that takes less work tries; left out: 20,000. In a plane,"
             " at how many poses it asks; left out: 60,000."
         ),
