@@ -33,7 +33,7 @@ def test_an_unknown_question_ends_with_2_and_one_line(capsys: pytest.CaptureFixt
 
 
 def test_a_number_that_cannot_be_is_told_with_its_option(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["ask", "escape", str(SCENES / "pendulum.yaml"), "--motions", "0"]) == 2
+    assert main(["ask", "escape", str(SCENES[0]), "--motions", "0"]) == 2
     assert capsys.readouterr().err.startswith('cagepose: Invalid value "0" for --motions. Must be >= 1.')
 
 
