@@ -47,6 +47,7 @@ DRAWN: dict[str, Callable[[np.random.Generator], Scene]] = {
     "countersunk": round_families.countersunk,
     "coin": round_families.coin,
     "roller": round_families.roller,
+    "rolling": round_families.rolling,
     "caged": caged_families.caged,
     "caged-seams": caged_families.caged_seams,
     "pushed-block": caged_families.pushed_block,
@@ -67,7 +68,7 @@ NUMBERED: dict[str, Callable[[int], Scene]] = {
 }
 """Families of one drawing each, whose index sets the friction."""
 
-ROUND = ("tapered-pin", "square-hole", "ball-on-hole", "peg", "countersunk", "coin", "roller")
+ROUND = ("tapered-pin", "square-hole", "ball-on-hole", "peg", "countersunk", "coin", "roller", "rolling")
 """Families with circles."""
 WITH_SHAPES = (*ROUND, "cam", "v-rollers", "dovetail", "puck", "ordinary")
 """Families with other shapes than points and boxes, which take most of the time: a quarter as many are asked, unless

@@ -131,6 +131,45 @@ def roller(rng: Rng) -> Scene:
     return _dropped(rng, [part], ground, [], beside, tilt=tilt, height=lift + 30 * tilt, heading=np.pi / 2)
 
 
+def rolling(rng: Rng) -> Scene:
+    """A ball, a roller or a bar with round ends rolls along rails, in a groove or over a plate with a hole, over its
+    end or up to a stop, above a floor.
+    """
+    radius, length = rng.choice([5.0, rng.uniform(3, 10)]), rng.choice([20.0, rng.uniform(10, 60)])
+    ends, across = rng.choice([10.0, rng.uniform(5, 30)]), Pose(euler_zyx=(0.0, 0.0, np.pi / 2))
+    part: Shape = Sphere(radius * MM, name="ball")
+    kind = rng.choice(["rails", "rods", "rails", "groove", "hole"])
+    if kind == "hole" or rng.random() < 0.3:
+        part = (Cylinder if rng.random() < 0.5 else Capsule)(radius * MM, length * MM, across, "roller")
+    half = radius * rng.choice([0.6, 0.8, rng.uniform(0.3, 0.95)])
+    beam, lift = np.array([40.0 + ends, 20.0, 10.0]) * MM, radius
+    middle, holes = (ends - 40.0) / 2.0, list[Hole]()
+    ground: list[Shape] = [Box(np.array([200.0, 100.0, 10.0]) * MM, _at(0, 0, -60), "floor")]
+    for side in (-1.0, 1.0):
+        if kind == "rails":
+            ground.append(Box(beam, _at(middle, side * (half + 10.0), -5.0), f"rail {side:g}"))
+        elif kind == "rods":
+            along = _at(middle, side * (half + 4.0), -4.0) @ Pose(euler_zyx=(0.0, np.pi / 2, 0.0))
+            ground.append(Cylinder(4.0 * MM, float(beam[0]), along, f"rod {side:g}"))
+        elif kind == "groove":
+            turned = Pose(euler_zyx=(0.0, 0.0, side * rng.choice([np.pi / 4, rng.uniform(0.2, 1.2)])))
+            ground.append(Box(beam, turned @ _at(middle, side * 10.0, -5.0), f"side {side:g}"))
+            lift = 2.5 * radius
+    if kind == "hole":
+        ground.append(Box(np.array([40.0 + ends, 60.0, 10.0]) * MM, _at(middle, 0.0, -5.0), "plate"))
+        holes.append(
+            Hole(rng.uniform(0.5, 1.0) * ends * MM, DEEP * MM, None, ("plate",), _at(0, rng.uniform(-9, 9), 0))
+        )
+    if rng.random() < 0.4:
+        ground.append(Box(np.array([10.0, 80.0, 60.0]) * MM, _at(ends + rng.uniform(-5, 15) + 5.0, 0.0, 0.0), "stop"))
+    way = np.array([1.0, rng.choice([0.0, 0.0, rng.normal() * 0.2]), 0.0])
+    push = Load("push", gravity=(0, 0, -9.81), force=Force(way, (0, 0, 0), 0.1 * 9.81 * rng.choice([0.02, 0.1, 0.4])))
+    pose = Pose(np.array([-ends - length / 2.0, rng.choice([0.0, 0.3]), lift + 0.5]) * MM)
+    held, mu = Object(shapes=[part], pose=pose, mass_kg=0.1), float(rng.choice([0.3, 0.5, rng.uniform(0.1, 1.0)]))
+    loads = [Load("weight", gravity=(0, 0, -9.81)), push]
+    return Scene(held, Cage(shapes=ground, holes=holes), loads, friction_coefficient=mu)
+
+
 def _plate(rng: Rng, radius: float, depth: float, chamfer: Chamfer | None = None) -> tuple[Box, Hole]:
     """A plate with its top at zero and a hole, half of those through and some chamfered."""
     thick = depth * rng.choice([1.0, 1.0, 1.5])
