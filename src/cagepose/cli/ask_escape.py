@@ -21,7 +21,7 @@ def ask_escape(
         Parameter(
             validator=Number(gte=1),
             help="How many motions the search for a way out that takes less work tries; left out: 20,000. In a plane,"
-            " at how many poses it asks; left out: 60,000."
+            " at how many poses it asks; left out: 60,000.",
         ),
     ] = None,
     set_values: SetOption = (),

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from cagepose.kernels.algebra.motion import Motion, motion_of, moved_point, turned_by_amount
+from cagepose.kernels.algebra.motion import Motion, motion_of
 from cagepose.kernels.algebra.pose import Quaternion
-from cagepose.kernels.algebra.vector import Vector, dot, minus, norm, plus, vector_from
+from cagepose.kernels.algebra.vector import Vector, cross, dot, minus, norm, plus, scaled, vector_from
 from cagepose.kernels.boundary.features import CIRCLE, FACE, PlacedBoundary
 from cagepose.kernels.boundary.first_touch import place_after
 from cagepose.kernels.boundary.geometry import Geometry, Placement, cage_at, cage_of, held_at, held_moved
@@ -30,25 +30,6 @@ HALVINGS = 50
 
 
 @kernel
-def met_after(
-    geometry: Geometry,
-    placement: Placement,
-    contacts: ContactSet,
-    i: int,
-    motion: Motion,
-    amount: float,
-    touch_m: float,
-) -> Meeting:
-    """Return how the features of a contact meet after an amount of a motion; the object's is placed there."""
-    contact, moved = contacts.rows[i], held_moved(geometry, placement)
-    cage, one, other = cage_at(geometry, contact.cage_body), contact.feature, contact.cage_feature
-    place_after(held_at(geometry, placement), one, motion, amount, moved)
-    has_circle = moved.features[one].kind == CIRCLE or cage.features[other].kind == CIRCLE
-    fixed = is_fixed(contacts, i) or (has_circle and amount == 0.0)  # where it was found
-    return meeting_kept(moved, one, cage, other, contact.angle, fixed, touch_m, placement.memory.places)
-
-
-@kernel
 def still_meet(
     geometry: Geometry,
     placement: Placement,
@@ -66,8 +47,11 @@ def still_meet(
     lies flat may go from one face to another one that is flush with it.
     """
     contact, moved = contacts.rows[i], held_moved(geometry, placement)
-    one, other = contact.feature, contact.cage_feature
-    met = met_after(geometry, placement, contacts, i, motion, amount, touch_m)
+    cage, one, other = cage_at(geometry, contact.cage_body), contact.feature, contact.cage_feature
+    place_after(held_at(geometry, placement), one, motion, amount, moved)
+    has_circle = moved.features[one].kind == CIRCLE or cage.features[other].kind == CIRCLE
+    fixed = is_fixed(contacts, i) or (has_circle and amount == 0.0)  # where it was found
+    met = meeting_kept(moved, one, cage, other, contact.angle, fixed, touch_m, placement.memory.places)
     if not met.is_one or dot(met.normal, vector_from(contact.directions[0])) < SAME_WAY:
         return False
     if reach_within(geometry, moved, one, other, met, touch_m, within_m):
@@ -192,22 +176,18 @@ def end_of_meeting(
 
 
 @kernel
-def way_of_place(
-    geometry: Geometry,
-    placement: Placement,
-    contacts: ContactSet,
-    i: int,
-    motion: Motion,
-    amount: float,
-    touch_m: float,
-) -> float:
-    """Return how far the place of a contact goes along either body while the object moves, the longer way, metres: a
-    vertex that slides stays where it is on the object, a ball that rolls goes along both.
+def speed_of_place(geometry: Geometry, contacts: ContactSet, i: int, velocity: Vector, spin: Vector) -> float:
+    """Return about how fast the place of a contact goes along its features at a twist: as fast as the object's material
+    does there, or at the core of one that is round: where a ball rolls, its material stands still.
     """
-    start = plus(motion.center, vector_from(contacts.rows[i].arm))
-    met = met_after(geometry, placement, contacts, i, motion, amount, touch_m)
-    carried = moved_point(motion, start, turned_by_amount(motion, amount))
-    return max(norm(minus(met.place, start)), norm(minus(met.place, carried)))
+    contact = contacts.rows[i]
+    arm, normal = vector_from(contact.arm), vector_from(contact.directions[0])
+    core = minus(arm, scaled(normal, geometry.held.features[contact.feature].radius))
+    cage_core = plus(arm, scaled(normal, geometry.cage.own.features[contact.cage_feature].radius))
+    fastest = norm(plus(velocity, cross(spin, arm)))
+    for at in (core, cage_core):
+        fastest = max(fastest, norm(plus(velocity, cross(spin, at))))
+    return fastest
 
 
 @kernel
@@ -239,7 +219,7 @@ def edge_crossing(
         reach = max(reach_m, STRAYED * astray)
         if still_meet(geometry, placement, contacts, i, motion, 0.0, touch_m, reach):
             return crossing
-        if way_of_place(geometry, placement, contacts, i, motion, before, touch_m) <= reach:
+        if crossing * speed_of_place(geometry, contacts, i, velocity, spin) <= reach:
             return math.inf
         if end == math.inf or not still_meet(geometry, placement, contacts, i, motion, end, touch_m, -reach):
             return crossing
