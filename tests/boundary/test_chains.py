@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from boundary.test_corners_of_solids import too_far, without
-from cagepose import Box, Cage, Load, Object, Pose, Scene, run
+from cagepose import Box, Cage, Facets, Load, Object, Pose, Scene, run
 from cagepose.files.step import triangles
 from cagepose.files.step.exact_facets import facets_on_surfaces
 from cagepose.files.step.triangles import triangles_of
+from cagepose.model.surfaces import PLANE, Surface
 
 pytest.importorskip("OCP")
 RADIUS, LENGTH = 2.0, 30.0
@@ -108,3 +109,16 @@ def test_a_face_whose_corners_are_far_off_its_surface_is_facets(monkeypatch):
     found = triangles_of(solid)
     assert set(found["on"]) == {-1}
     assert found["off_others"] == pytest.approx(3e-3, rel=0.01)
+
+
+def test_an_edge_between_flat_facets_that_is_shorter_than_what_counts_as_flat_is_a_straight_edge():
+    """A hip roof, its bottom the only face that is told to stand for a surface."""
+    half_ridge, flat = 2e-5, 1e-4
+    corners = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (-half_ridge, 0, 1), (half_ridge, 0, 1)]
+    slopes = [(0, 1, 5), (0, 5, 4), (2, 3, 4), (2, 4, 5), (1, 2, 5), (3, 0, 4)]
+    bottom = Surface(PLANE, (0.0, 0.0, 0.0), (0.0, 0.0, -1.0))
+    roof = Facets(corners, [(0, 2, 1), (0, 3, 2), *slopes], flat, None, "roof", [bottom], [0, 0, *[-1] * 6])
+    start = Pose((0.0, 0.0, 3.0), euler_zyx=(0.3, 0.2, 0.4))
+    done = run(Scene(Object(shapes=[roof], pose=start), Cage(shapes=[FLOOR]), [Load("weight", gravity=(0, 0, -9.81))]))
+    assert done.verdict == "rests"
+    assert done.pose.transform(np.array(corners[:4], float))[:, 2] == pytest.approx(0.0, abs=1e-9)
