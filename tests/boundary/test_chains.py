@@ -13,7 +13,7 @@ from cagepose import Box, Cage, Facets, Load, Object, Pose, Scene, run
 from cagepose.files.step import triangles
 from cagepose.files.step.exact_facets import facets_on_surfaces
 from cagepose.files.step.triangles import triangles_of
-from cagepose.model.surfaces import PLANE, Surface
+from cagepose.model.surfaces import PLANE, TORUS, Surface
 
 pytest.importorskip("OCP")
 RADIUS, LENGTH = 2.0, 30.0
@@ -58,10 +58,20 @@ def cut_aslant(lean: float) -> Any:
     return BRepAlgoAPI_Cut(rod(), BRepPrimAPI_MakeCylinder(upwards, 90.0, 90.0).Shape()).Shape()
 
 
+def as_splines(solid: dict[str, Any], off: float) -> dict[str, Any]:
+    """Return what is known of a solid if its torus were a spline, and corners as far off their surfaces."""
+    known = np.array([kind != TORUS for kind, *_ in solid["known"]])
+    on = np.array(solid["on"])
+    return {**solid, "on": np.where(known[on], on, -1).tolist(), "off_surfaces": off}
+
+
 PARTS = {
     "bored across": lambda: facets_on_surfaces(triangles_of(cross_bored(), within=True), "part"),
     "cut aslant": lambda: without(rod(), (-45.0, -45.0, 20.0), 0.5),
     "rounded": lambda: facets_on_surfaces(triangles_of(rounded(0.5)), "part"),
+    "rounded by a spline, corners off": lambda: facets_on_surfaces(
+        as_splines(triangles_of(rounded(0.5)), 2e-4), "part"
+    ),
     "well rounded": lambda: facets_on_surfaces(triangles_of(rounded(1.5)), "part"),
 }
 
