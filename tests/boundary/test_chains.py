@@ -122,8 +122,8 @@ def test_a_face_whose_corners_are_far_off_its_surface_is_facets(monkeypatch):
 
 
 def test_a_rod_rolls_over_the_rim_of_its_cross_hole_to_where_it_is_heavy(cases):
-    """Its centre of gravity is a four-hundredth of the radius beside the axis, toward an angle beside the hole. A corner
-    of the rim that all but touches holds nothing that the side on both sides of the hole does not.
+    """Its centre of gravity is a four-hundredth of the radius beside the axis, toward an angle beside the hole. A
+    corner of the rim that all but touches holds nothing that the side on both sides of the hole does not.
     """
     heavy, away = 2.0, 0.005
     shape = facets_on_surfaces(triangles_of(cross_bored(20.0, 0.0)), "part").shape

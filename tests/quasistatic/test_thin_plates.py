@@ -14,7 +14,7 @@ FLOOR = Box((2.0, 2.0, 0.1), Pose((0.0, 0.0, -0.55)), name="floor")
 
 
 def test_a_card_that_slides_off_another_one_ends_flat_on_the_floor(cases):
-    """It falls onto the lower edge of one that stands in the air, three degrees less steep, and slides down along it."""
+    """It falls onto the lower edge of one in the air, three degrees less steep, and slides down along it."""
     rng = np.random.default_rng(11)
     steep, less_steep = math.radians(80.0), math.radians(77.0)
     for _ in range(cases(8, 200)):

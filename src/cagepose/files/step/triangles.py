@@ -174,8 +174,8 @@ def _divided(solid: Any) -> Any:
 
 
 def _off(face: Any) -> float:
-    """Return how far the triangles of a face are off at most: the sagitta of their chords, along and across; of a surface
-    that has none, see `_off_middles`.
+    """Return how far the triangles of a face are off at most: the sagitta of their chords, along and across; of another
+    surface, see `_off_middles`.
     """
     from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane, GeomAbs_Sphere, GeomAbs_Torus

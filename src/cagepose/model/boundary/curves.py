@@ -208,8 +208,8 @@ def _is_straight(places_m: FloatArray, flat_m: float) -> bool:
 
 
 def _turned(surface: Surface, places_m: FloatArray) -> float:
-    """Return how far around a surface leads from the first of some places to the last one, metres: along a chord that is
-    as near to it as if it lay on it, too.
+    """Return how far around a surface it is from the first of some places to the last one, metres. A chord may lead
+    around it and be as near to it as a line that lies on it.
     """
     if not surface.is_round:
         return 0.0
