@@ -141,10 +141,12 @@ def _curve(
     surfaces: Sequence[Surface],
     flat_m: float,
 ) -> Curve:
-    places = vertices_m[nodes]
     none = np.zeros(3)
     chain = Curve(CHAIN, nodes, left, right, sides, none, none, 0.0)
     one, other = surfaces[left], surfaces[right]
+    if len(nodes) == 2 and one.kind == PLANE and other.kind == PLANE:  # as of most edges, where there are facets
+        return chain._replace(kind=LINE)
+    places = vertices_m[nodes]
     if nodes[0] != nodes[-1] and _is_straight(places, flat_m):
         middle = (places[:1] + places[-1:]) / 2.0
         off = max(abs(float(surface.heights(middle)[0])) for surface in (one, other))
