@@ -93,3 +93,19 @@ def test_a_surface_that_is_not_where_its_triangles_are_is_an_error():
         wrong = [replace(one, **changes) if one.kind == kind else one for one in bar.surfaces]
         with pytest.raises(SceneError, match=found):
             Facets(bar.vertices_m, bar.triangles, bar.flat_m, None, "part", wrong, bar.on)
+
+
+def test_how_far_facets_are_off_a_spline_is_measured():
+    """A cylinder whose side is written as a spline: its chords are off by their sagitta."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+
+    radius = 10.0
+    found = triangles_of(BRepBuilderAPI_NurbsConvert(BRepPrimAPI_MakeCylinder(radius, 30.0).Shape()).Shape())
+    corners = np.array(found["vertices"])[np.array(found["faces"])]
+    middles = np.concatenate([corners.mean(axis=1), (0.5 * (corners + np.roll(corners, 1, axis=1))).reshape(-1, 3)])
+    is_beside = np.abs(middles[:, 2] - 15.0) < 14.999
+    sagitta = radius - np.linalg.norm(middles[is_beside, :2], axis=1).min()
+    assert found["known"] == []
+    assert found["off_others"] == pytest.approx(sagitta, abs=1e-6)
+    assert sagitta < 0.02

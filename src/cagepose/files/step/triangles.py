@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cagepose.files.step.open_cascade import each, moments_of
+from cagepose.files.step.open_cascade import each, moments_of, xyz
 from cagepose.files.step.surfaces import farthest_off, one_of_each, surface_of_face
 from cagepose.files.step.tolerances import SAME_OF_SIZE, SAME_PLACE
 from cagepose.model.checks import FloatArray
@@ -24,6 +24,8 @@ FARTHEST_APART = 1e-3
 FARTHEST_OFF = 1e-4
 """Fraction of the size. A face whose corners are farther off its surface is flat facets: edges that a program wrote as
 splines, such as helices, may be that far off."""
+NEAR_ENOUGH = 1e-6
+"""Millimetres: how near the foot of a place on a surface is found."""
 CHORD_OF_SIZE = 1e-2
 """How far triangles may be from the surface, where that is less than `CHORDS_OF_CIRCLE` gives."""
 
@@ -172,11 +174,11 @@ def _divided(solid: Any) -> Any:
 
 
 def _off(face: Any) -> float:
-    """Return how far the triangles of a face are off at most: the sagitta of their chords, along and across."""
-    from OCP.BRep import BRep_Tool
+    """Return how far the triangles of a face are off at most: the sagitta of their chords, along and across; of another
+    surface, see `_off_middles`.
+    """
     from OCP.BRepAdaptor import BRepAdaptor_Surface
     from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane, GeomAbs_Sphere, GeomAbs_Torus
-    from OCP.TopLoc import TopLoc_Location
 
     surface = BRepAdaptor_Surface(face)
     kind = surface.GetType()
@@ -192,8 +194,34 @@ def _off(face: Any) -> float:
     elif kind == GeomAbs_Torus:
         radii = surface.Torus().MajorRadius() + 2.0 * surface.Torus().MinorRadius()
     else:
-        return float(BRep_Tool.Triangulation_s(face, TopLoc_Location()).Deflection())
+        return _off_middles(face)
     return float(radii * (1.0 - np.cos(np.pi / CHORDS_OF_CIRCLE)))
+
+
+def _off_middles(face: Any) -> float:
+    """Return how far the middles of a face's triangles and of their sides are from its surface. What Open CASCADE tells
+    of that (`Deflection`) is what it was asked for, up to fifty times as much.
+    """
+    from OCP.BRep import BRep_Tool
+    from OCP.gp import gp_Pnt, gp_Pnt2d
+    from OCP.ShapeAnalysis import ShapeAnalysis_Surface
+    from OCP.TopLoc import TopLoc_Location
+
+    place = TopLoc_Location()
+    mesh = BRep_Tool.Triangulation_s(face, place)
+    turn, surface = place.Transformation(), ShapeAnalysis_Surface(BRep_Tool.Surface_s(face))
+    numbers = range(1, mesh.NbNodes() + 1)
+    nodes = np.array([xyz(mesh.Node(number).Transformed(turn)) for number in numbers])
+    places = np.array([(mesh.UVNode(number).X(), mesh.UVNode(number).Y()) for number in numbers])
+    listed = (mesh.Triangle(number) for number in range(1, mesh.NbTriangles() + 1))
+    corners = np.array([[triangle.Value(corner) - 1 for corner in (1, 2, 3)] for triangle in listed])
+    sides = np.unique(np.sort(np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])), axis=0)
+    farthest = 0.0
+    for ends in (corners, sides):
+        for middle, near in zip(nodes[ends].mean(axis=1), places[ends].mean(axis=1), strict=True):
+            surface.NextValueOfUV(gp_Pnt2d(*near), gp_Pnt(*middle), NEAR_ENOUGH)
+            farthest = max(farthest, surface.Gap())
+    return farthest
 
 
 def _is_ball(face: Any) -> bool:

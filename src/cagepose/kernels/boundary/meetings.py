@@ -39,7 +39,7 @@ from cagepose.kernels.boundary.reach import beyond_normals
 from cagepose.kernels.boundary.touching import AT_ONE_PLACE, HALF_SECTOR, SAME_PLACE, Along, Meetings
 from cagepose.kernels.boundary.tree import FACES, VERTICES, Node, boxes_apart, may_touch
 from cagepose.kernels.boundary.twins import append_meeting
-from cagepose.kernels.boundary.within import is_within, nearest_surface
+from cagepose.kernels.boundary.within import OUTSIDE, depth_in, is_within, nearest_surface
 from cagepose.kernels.circles.beside_circle import place_by_circle_near
 from cagepose.kernels.circles.beside_round import place_by_round_near
 from cagepose.kernels.circles.places import GREATEST, SADDLE, WHOLE, Place, write_place
@@ -377,7 +377,8 @@ def append_touching(
     found: Meetings,
 ) -> None:
     """Append a meeting, if two features touch there: they are near, not on far sides of a part, and both reach. What is
-    deep in a face is in its body, with no other surface nearer; of other features that are, it is well within them.
+    deep in a face is in its body, with no other surface nearer; of other features that are, it is well within them, and
+    if they are sharp, in one of the bodies: a thin plate is as far beyond the far edges of another one beside it.
     """
     one, other = held.own.features[i], cage.own.features[j]
     if not met.is_one or met.gap > touch_m:
@@ -393,8 +394,23 @@ def append_touching(
     else:
         deepest = DEEPEST_OF_LEAST * min(one.least, other.least)
         touches = met.gap >= -deepest and both_reach(held, i, cage, j, met, slack, -touch_m)
+        is_sharp = one.radius == 0.0 and other.radius == 0.0
+        touches = touches and (not is_sharp or is_in_either(held, cage, met, touch_m, found))
     if touches:
         append_meeting(held, i, cage, j, along, met, touch_m, found)
+
+
+@kernel
+def is_in_either(held: PlacedBoundary, cage: PlacedBoundary, met: Meeting, touch_m: float, found: Meetings) -> bool:
+    """Whether, of two features that are deep in each other, the place of one of them is in the body of the other, or on
+    it.
+    """
+    seen = in_body(cage, minus(met.place, position_of(cage)))
+    if depth_in(cage.own, seen, touch_m, found.waiting).distance != OUTSIDE:
+        return True
+    opposite = plus(met.place, scaled(met.normal, met.gap))
+    seen = in_body(held, minus(opposite, position_of(held)))
+    return depth_in(held.own, seen, touch_m, found.waiting).distance != OUTSIDE
 
 
 @kernel

@@ -92,8 +92,14 @@ def keep_along_faces(contacts: ContactSet, locked: PassiveSet, dependent: float,
     Nothing moves there, but it could make the matrix look as if it were not positive, or rounding of the forces as if
     it moved the object. Return the least rho that stands out from the rounding.
     """
-    least_rho = LEAST_RHO * frobenius_norm(work.curvature, contacts.n_freedoms)
     hold_carrying(contacts, locked, dependent, work)
+    return keep_along_held(work)
+
+
+@kernel
+def keep_along_held(work: ImplicitStepWorkspace) -> float:
+    """As `keep_along_faces`, for the basis that is there."""
+    least_rho = LEAST_RHO * frobenius_norm(work.curvature, work.held.n_rows)
     add_across(work.curvature, work.held, confine(work.curvature, work.held))
     return least_rho
 
@@ -148,7 +154,8 @@ def is_convex(rho: float, work: ImplicitStepWorkspace) -> bool:
 @kernel
 def shared_step(contacts: ContactSet, rho: float, work: ImplicitStepWorkspace, solver: ContactWorkspace) -> bool:
     """Write the step into ``work.delta`` that keeps all contacts closed that carry, for shared forces: Newton's,
-    where S is in ``work.curvature``. False: S is not convex.
+    where S is in ``work.curvature``. False: S is not convex. What is held is what those hold that carried before they
+    shared: others hold nothing else, in whichever order they are asked.
 
     Where contacts share forces in many ways and their normals all but depend on each other, as of a cone that touches
     the edges of a square hole, the one that the onset takes may be unstable, and a balance between two is stable.

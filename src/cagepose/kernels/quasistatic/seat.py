@@ -17,7 +17,7 @@ from cagepose.kernels.contact.metric import frame_at, twist_of, way_between
 from cagepose.kernels.contact.sharing import share_evenly
 from cagepose.kernels.native.kernel import kernel
 from cagepose.kernels.quasistatic.first_contact import NO_HIT, Twist
-from cagepose.kernels.quasistatic.implicit_step import LEAST_RHO, hold_carrying, keep_along_faces, shared_step
+from cagepose.kernels.quasistatic.implicit_step import LEAST_RHO, hold_carrying, keep_along_held, shared_step
 from cagepose.kernels.quasistatic.path import Path, step_to
 from cagepose.kernels.quasistatic.projection import DEPENDENT
 from cagepose.kernels.quasistatic.pushing_out import allow_depths
@@ -56,7 +56,7 @@ def seated(
         if not share_evenly(contacts, stiff.held, solver.cone.passive.residual, solver.load_terms, stiff.sharing):
             break
         write_curvature(contacts, setting.load, end, turned, frame, False, stiff.curvature)
-        least_rho = keep_along_faces(contacts, solver.locked, DEPENDENT, stiff)
+        least_rho = keep_along_held(stiff)
         if not shared_step(contacts, max(least_rho, LEAST_RHO), stiff, solver):
             break
         velocity, spin = twist_of(stiff.delta, frame)

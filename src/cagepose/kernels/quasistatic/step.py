@@ -54,6 +54,7 @@ from cagepose.kernels.quasistatic.implicit_step import (
     implicit_step,
     is_convex,
     keep_along_faces,
+    keep_along_held,
     rho_against_circulation,
     shared_step,
 )
@@ -148,7 +149,7 @@ def is_shared(
     if not share_evenly(contacts, stiff.held, solver.y, solver.load_terms, stiff.sharing):
         return False
     write_curvature(contacts, setting.load, position, quaternion, frame, False, stiff.curvature)
-    keep_along_faces(contacts, solver.locked, DEPENDENT, stiff)
+    keep_along_held(stiff)
     if shared_step(contacts, rho, stiff, solver):
         return True
     for i in range(contacts.used[0]):

@@ -63,9 +63,10 @@ def with_arcs(
 
 def _arcs(ends_m: FloatArray, surfaces: Sequence[Surface], near_m: float) -> tuple[FloatArray | None, list[Circle]]:
     """Return the circles of an edge between two places of its surfaces, and where two of them meet. Without circles it
-    is straight: that of a hollow side, as of a hole, whose ends lie on both sides of what rolls over them.
+    is straight: one between flat facets, and that of a hollow side, as of a hole, whose ends lie on both sides of what
+    rolls over them.
     """
-    if any(surface.radius_m < 0.0 for surface in surfaces):
+    if not surfaces or any(surface.radius_m < 0.0 for surface in surfaces):
         return None, []
     start, end = ends_m
     seen = onto(ends_m.mean(axis=0, keepdims=True), surfaces)[0] - start

@@ -141,14 +141,17 @@ def _curve(
     surfaces: Sequence[Surface],
     flat_m: float,
 ) -> Curve:
-    places = vertices_m[nodes]
     none = np.zeros(3)
     chain = Curve(CHAIN, nodes, left, right, sides, none, none, 0.0)
     one, other = surfaces[left], surfaces[right]
+    if len(nodes) == 2 and one.kind == PLANE and other.kind == PLANE:  # as of most edges, where there are facets
+        return chain._replace(kind=LINE)
+    places = vertices_m[nodes]
     if nodes[0] != nodes[-1] and _is_straight(places, flat_m):
         middle = (places[:1] + places[-1:]) / 2.0
         off = max(abs(float(surface.heights(middle)[0])) for surface in (one, other))
-        return chain._replace(kind=LINE) if off <= 2.0 * flat_m else chain
+        turned = max(_turned(surface, places) for surface in (one, other))
+        return chain._replace(kind=LINE) if max(off, turned) <= 2.0 * flat_m else chain
     return _around_axis(chain, places, one, other, flat_m) or _across_tube(chain, places, one, other, flat_m) or chain
 
 
@@ -204,6 +207,16 @@ def _is_straight(places_m: FloatArray, flat_m: float) -> bool:
     along = seen @ way / length
     off = np.linalg.norm(seen - np.outer(along / length, way), axis=1)
     return bool(off.max() <= flat_m and (np.diff(along) > 0.0).all())
+
+
+def _turned(surface: Surface, places_m: FloatArray) -> float:
+    """Return how far around a surface it is from the first of some places to the last one, metres. A chord may lead
+    around it and be as near to it as a line that lies on it.
+    """
+    if not surface.is_round:
+        return 0.0
+    first, last = surface.normals(places_m[[0, -1]])
+    return abs(surface.radius_m) * float(np.linalg.norm(last - first))
 
 
 def _common_axis(one: Surface, other: Surface, flat_m: float) -> tuple[FloatArray, FloatArray] | None:

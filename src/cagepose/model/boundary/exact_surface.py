@@ -17,7 +17,7 @@ import numpy as np
 from cagepose.kernels.algebra.record import dtype_of
 from cagepose.kernels.union.loops import Border, Loop, find_loops
 from cagepose.model.boundary.blocks import Block
-from cagepose.model.boundary.chains import halved, on_surfaces, with_arcs
+from cagepose.model.boundary.chains import exact_beside, halved, on_surfaces, with_arcs
 from cagepose.model.boundary.curves import ARC, CHAIN, LINE, Curve, curves_of, pieces_of
 from cagepose.model.boundary.regions import FacePlanes, regions_of
 from cagepose.model.boundary.round_features import ball_of, circle_of, is_within_caps, side_of, tip_of
@@ -125,7 +125,7 @@ def _surface_of(placed: _Placed) -> ExactSurface:
     found = _without_lost(shape.nodes_body(), shape.triangles, first[shape.on], surfaces, shape.flat_m)
     near_m = FLAT * float(np.ptp(found.vertices_m, axis=0).max())
     for _ in range(HALVINGS):
-        chains = [curve for curve in found.curves if curve.kind == CHAIN]
+        chains = [curve for curve in found.curves if curve.kind == CHAIN and exact_beside(curve, found.regions)]
         found = found._replace(vertices_m=on_surfaces(chains, found.vertices_m, found.regions))
         finer = halved(chains, found.vertices_m, found.triangles, found.on, found.regions, near_m)
         if len(finer[0]) == len(found.vertices_m):
