@@ -20,9 +20,9 @@ from cagepose.model.load import Load
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
-from cagepose.model.shapes import Capsule, Sphere
+from cagepose.model.shapes import Capsule, Cylinder, Sphere
 from cagepose.questions.cage_rests import CageRests, cage_rests
-from cagepose.questions.resting import is_on_floor_alone
+from cagepose.questions.resting import is_on_floor_alone, resting_poses
 from cagepose.questions.unanswered import Unanswered
 from cagepose.studies.likelihood import wilson
 
@@ -64,6 +64,60 @@ def test_a_ball_ends_in_the_trough_over_which_it_starts(cases: Callable[[int, in
     ends_x = np.array([rest.pose.position_m[0] for rest in found.rests])[list(found.ends_in)]
     assert (np.sign(found.start_position_m[:, 0]) == np.sign(ends_x)).all()
     assert [rest.n for rest in found.rests] == np.bincount(found.ends_in).tolist()
+
+
+def in_a_tray(part: Object) -> Scene:
+    """A part 25 mm above the floor of a tray with a lid, in which it may turn in any way."""
+    sides = [Box((0.01, 0.12, 0.06), Pose((side * 0.035, 0.0, 0.03)), f"side {side}") for side in (-1, 1)] + [
+        Box((0.12, 0.01, 0.06), Pose((0.0, side * 0.035, 0.03)), f"end {side}") for side in (-1, 1)
+    ]
+    level = [Box((0.12, 0.12, 0.01), Pose((0.0, 0.0, z)), name) for z, name in ((-0.005, "floor"), (0.065, "lid"))]
+    return Scene(
+        part.starting_at(Pose((0.0, 0.0, 0.03))), Cage(shapes=[*sides, *level]), [Load("weight", gravity=(0, 0, -1))]
+    )
+
+
+def test_a_part_that_may_turn_in_any_way_ends_in_all_its_rests_on_a_plane() -> None:
+    """A U, which lies in six ways: starts are not only about the orientation in which it is drawn."""
+    part = Object(
+        [
+            Box((0.02, 0.03, 0.004), Pose((0.0, 0.0, 0.002))),
+            *(Box((0.004, 0.03, 0.016), Pose((side * 0.008, 0.0, 0.008))) for side in (-1, 1)),
+        ]
+    )
+    found = rests_of(in_a_tray(part), n_starts=150)
+    assert set(found.not_limited) == {"roll", "pitch", "yaw"}
+    downs = np.array([-rest.pose.rotation[2] for rest in found.rests])
+    on_plane = np.array([pose.down_object for pose in resting_poses(part).poses])
+    assert len(downs) == len(on_plane) == 6
+    assert (on_plane @ downs.T).max(axis=1) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_a_shaft_that_may_roll_is_one_row_wherever_it_stops() -> None:
+    """On the floor of a tray it turns about itself and the vertical; it may touch walls, too."""
+    shaft = Object(shapes=[Cylinder(0.006, 0.02), Cylinder(0.004, 0.016, Pose((0.0, 0.0, 0.018)))])
+    found = rests_of(in_a_tray(shaft), n_starts=60)
+    heights = [rest.pose.position_m[2] for rest in found.rests]
+    assert heights[0] == pytest.approx(0.006, abs=1e-9)
+    assert min(abs(height - 0.006) for height in heights[1:]) > 1e-3
+    assert found.rests[0].n > 45
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.003])
+def test_a_bar_that_turns_about_its_own_axis_is_one_row_wherever_its_origin_is(aside: float) -> None:
+    """In a V-groove, between two ends, a bar without friction stops at any angle."""
+    flanks = [
+        Box((0.1, 0.06, 0.01), Pose((0.0, side * 0.0176776695, 0.0106066017), euler_zyx=(0.0, 0.0, side * math.pi / 4)))
+        for side in (-1, 1)
+    ]
+    ends = [Box((0.01, 0.1, 0.06), Pose((side * 0.027, 0.0, 0.03))) for side in (-1, 1)]
+    bar = Object(
+        shapes=[Cylinder(0.01, 0.04, Pose((0.0, aside, 0.0), euler_zyx=(0.0, math.pi / 2, 0.0)))],
+        pose=Pose((0.0, 0.0, 0.02)),
+    )
+    found = rests_of(Scene(bar, Cage(shapes=[*flanks, *ends]), [Load("weight", gravity=(0, 0, -1))]), n_starts=40)
+    lying = [rest for rest in found.rests if rest.stability is not None and "roll" in rest.undetermined]
+    assert len(lying) == 1
 
 
 def test_shares_are_told_with_wilsons_interval() -> None:

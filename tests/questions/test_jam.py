@@ -26,6 +26,8 @@ from cagepose import (
     run,
 )
 from cagepose.cli.app import main
+from cagepose.files.answers.jam import lines
+from cagepose.files.words import LengthWords
 from questions.cones_of_sides import OUTER, is_balanced
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
@@ -119,6 +121,44 @@ def test_a_stop_that_holds_a_part_without_friction_is_no_jam() -> None:
     assert found.friction == math.inf
     assert found.pose_world_object is None
     assert (found.n_stopped, found.n_asked) == (1, 2)
+
+
+def slider(length: float, offset: float, play: float, friction: float) -> Scene:
+    """A block between two rails with some play, pushed beside them at an arm that leans it onto the floor."""
+    half, high = 0.005, 0.005
+    rails = [
+        Box((0.4, 0.002, 0.01), Pose((0.0, side * (half + 0.5 * play + 0.001), 0.0)), name)
+        for side, name in ((1.0, "left"), (-1.0, "right"))
+    ]
+    floor = Box((0.4, 0.008, 0.01), Pose((0.0, 0.0, -0.01)), "floor")
+    block = [
+        Box((length, 2.0 * half, 2.0 * high)),
+        Box((0.002, 0.002, 0.016), Pose((0.0, 0.0, 0.012))),
+        Box((0.002, offset, 0.002), Pose((0.0, 0.5 * offset, 0.02))),
+        Box((0.002, 0.002, 0.022), Pose((0.0, offset, 0.01))),
+    ]
+    push = Load("push", force=Force((1, 0, 0), (0.0, offset, 0.0)))
+    cage = Cage(shapes=[*rails, floor])
+    return Scene(Object(block), cage, [push], friction_coefficient=friction, friction_of={"floor": 0.0})
+
+
+@pytest.mark.parametrize(("length", "offset"), [(0.016, 0.012), (0.02, 0.08), (0.025, 0.1)])
+def test_a_block_that_also_leans_on_a_floor_without_friction_jams_from_there_on(length: float, offset: float) -> None:
+    """Where the motions that give way are long, each to a contact of its own, none was found within rounding."""
+    half = 0.5 * length / offset
+    found = asked(run(slider(length, offset, 2e-5, 1.3 * half)))
+    assert found.friction == pytest.approx(half, rel=3e-3)
+
+
+def test_a_block_without_play_jams_with_any_friction() -> None:
+    """Its rails can press on it as hard as need be; without friction it would slide, so they are no stop."""
+    a_run = run(slider(0.02, 0.02, 0.0, 0.25))
+    found = asked(a_run)
+    assert a_run.phases[0].verdict == "may rest"
+    assert (found.friction, found.n_stopped) == (0.0, 0)
+    told = dict(lines(found, LengthWords("mm", a_run.scene.size_m)))
+    assert told["jam"] == "from any above 0 on, it can jam, however hard it is pushed"
+    assert told["here"] == "with 0.25 it can jam"
 
 
 def test_what_nothing_pushes_does_not_jam() -> None:

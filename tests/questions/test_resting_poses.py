@@ -208,6 +208,61 @@ def test_a_centre_of_gravity_outside_is_refused() -> None:
         resting_poses(Object([Box((0.01, 0.01, 0.01))], center_of_gravity_m=(0.0, 0.0, 0.02)))
 
 
+def test_a_bolt_lies_on_each_flat_of_its_head_not_in_a_row() -> None:
+    """Its shank is round, but to roll on it must be raised over a corner of the head."""
+    across, height, radius, length = 0.016, 0.0064, 0.005, 0.04
+    angles = [math.pi / 3.0 * side for side in range(6)]
+    corner = across / math.sqrt(3.0)
+    corners = [(corner * math.cos(a), corner * math.sin(a), z) for a in angles for z in (0.0, height)]
+    shank = Cylinder(radius, length, Pose((0.0, 0.0, -length / 2.0)), "shank")
+    part = Object(shapes=[Convex(corners, name="head"), shank])
+    found = resting_poses(part).poses
+    assert [pose.rolls for pose in found] == ["no"] * 8
+    above_end = length + part.center_of_gravity_m[2]
+
+    def height_on(out: float) -> float:
+        lean = math.atan2(out - radius, length)
+        return radius * math.cos(lean) + above_end * math.sin(lean)
+
+    for pose in found[:6]:
+        assert pose.touching == ("head", "shank")
+        assert pose.height_m == pytest.approx(height_on(across / 2.0), rel=1e-6)
+        assert pose.rise_m == pytest.approx(height_on(corner) - height_on(across / 2.0), rel=1e-3)
+        assert pose.probability == pytest.approx(sum(one.probability for one in found[:6]) / 6.0, abs=2e-3)
+
+
+def test_two_sides_between_which_something_round_would_rest_on_points_are_two_poses() -> None:
+    """A hull of points on crossed bars, or on three balls, would rest on edge; the round parts fall to a side."""
+    bars = [Cylinder(0.005, 0.06, Pose(euler_zyx=(yaw, math.pi / 2.0, 0.0))) for yaw in (0.0, math.pi / 2.0)]
+    flat = resting_poses(Object(shapes=bars, center_of_gravity_m=(0.0, 0.0, 0.0))).poses[:2]
+    balls = [Sphere(0.005, Pose((0.02 * math.cos(a), 0.02 * math.sin(a), 0.0))) for a in (0.0, 2.0, 4.0)]
+    for one, other in (flat, resting_poses(Object(shapes=balls, center_of_gravity_m=(0.0, 0.0, 0.0))).poses):
+        assert (one.rolls, other.rolls) == ("no", "no")
+        assert one.down_object @ other.down_object == pytest.approx(-1.0)
+        assert one.height_m == pytest.approx(0.005, rel=1e-6)
+        assert one.probability == pytest.approx(other.probability, abs=5e-3)
+
+
+def test_two_unlike_balls_on_a_rod_roll_about_their_line() -> None:
+    balls = [Sphere(0.01, Pose((-0.02, 0.0, 0.0))), Sphere(0.006, Pose((0.02, 0.0, 0.0)))]
+    (row,) = resting_poses(Object(shapes=balls, center_of_gravity_m=(-0.011, 0.0, 0.0))).poses
+    assert row.rolls == "about an axis"
+    assert row.axis_object == pytest.approx((1.0, 0.0, 0.0), abs=1e-4)
+    assert row.height_m == pytest.approx(0.01 - 0.009 * 0.1, rel=1e-6)
+    assert row.probability == pytest.approx(1.0)
+
+
+def test_a_face_on_whose_edge_the_centre_of_gravity_stands_takes_no_rise_to_tip() -> None:
+    """A block that leans by 45 deg, as wide as it is high."""
+    corners = np.array([(x + z, y, z) for x, y, z in product((0.0, 0.02), (-0.01, 0.01), (0.0, 0.02))])
+    poses = resting_poses(Object(shapes=[Convex(corners)])).poses
+    on_edge = [pose for pose in poses if abs(pose.down_object[2]) > 0.99]
+    assert len(on_edge) == 2
+    for pose in on_edge:
+        assert (pose.margin_m, pose.rise_m) == (pytest.approx(0.0, abs=1e-12), pytest.approx(0.0, abs=1e-12))
+    assert poses[0].rise_m == pytest.approx(0.01 - 0.01 / math.sqrt(2.0))
+
+
 def test_a_rounded_plate_stands_on_its_narrow_sides_where_these_are_flat() -> None:
     """66 x 2 x 142 mm and a radius of 3 mm about it: the flat of a narrow side is 2 mm wide, and over its edge the
     centre of gravity is raised to sqrt(33^2 + 1) + 3 mm.

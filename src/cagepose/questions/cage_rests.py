@@ -15,6 +15,7 @@ from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.questions.ends import moved_before
 from cagepose.questions.unanswered import Unanswered
+from cagepose.questions.work import work_of
 from cagepose.runs.cases import greatest_friction
 from cagepose.runs.many import run_many
 from cagepose.runs.methods import chosen_method
@@ -33,6 +34,11 @@ OPEN_WAY, OPEN_ANGLE = 0.25, math.pi / 4.0
 """How far starts are from the scene's own where the cage sets no limit: of the scene's size, and radians."""
 SAME_POSE = 1e-3
 """Ends that are this near are one: of the scene's size, and radians."""
+SAME_HEIGHT = 1e-6
+"""Of the load times the scene's size. Ends that roll into each other differ in the load's work by no more."""
+BEARS = 1e-6
+"""Of the greatest contact force. A contact with less does not bear the load."""
+PLANE_FREEDOMS = {"x", "y", "z", "yaw"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +57,7 @@ class CageRest:
         Names of the cage's points and shapes that touch at that end.
     undetermined
         Freedoms of the cage's frame along which the load does not tell poses apart: ends that differ in them are one.
+        Where it rolls, so are ends with the load on the same parts at the same height.
     n
         How many starts ended here.
     low, high
@@ -89,7 +96,8 @@ class CageRests:
     has_friction
         Whether there is any.
     not_limited
-        Freedoms in which the play has no end, so that starts lie about the scene's own.
+        Freedoms in which the play has no end, so that starts lie about the scene's own; if all turns are among them,
+        they are turned in any way.
     """
 
     phase: str
@@ -115,7 +123,8 @@ def cage_rests(
     """Let the object go from many poses in its cage under the load of one phase, and gather where it ends.
 
     Starts are drawn about the scene's own start pose, over the ranges of its play in each freedom, denser about the
-    middle; poses at which the object would be in the cage are left out. The same starts are drawn each time.
+    middle, or turned in any way, each as likely, if no turn has a limit; poses at which the object would be in the cage
+    are left out. The same starts are drawn each time.
 
     Parameters
     ----------
@@ -150,25 +159,28 @@ def cage_rests(
     opens = [OPEN_WAY * scene.size_m] * N_LENGTHS + [OPEN_ANGLE] * (len(FREEDOMS) - N_LENGTHS)
     lows = np.array([-far if low is None else max(low, -far) for (low, _), far in zip(limits, opens, strict=True)])
     highs = np.array([far if high is None else min(high, far) for (_, high), far in zip(limits, opens, strict=True)])
-    drops = _Drops(alone, lows, highs)
+    not_limited = tuple(name for name, ends in zip(FREEDOMS, limits, strict=True) if None in ends)
+    drops = _Drops(alone, lows, highs, turns_freely(not_limited))
     while drops.n_valid < n_starts and drops.n_proposed < MOST_PROPOSED * n_starts:
         drops.drop(n_starts)
         if progress is not None:
             progress(min(drops.n_valid / n_starts, 1.0))
     if drops.n_valid == 0:
         return Unanswered(f"no pose in the cage was found beside the start, of {drops.n_proposed} that were drawn")
-    return drops.gathered(load.name, n_starts, _not_limited(limits))
+    return drops.gathered(load.name, n_starts, not_limited)
 
 
-def _not_limited(limits: list[tuple[float | None, float | None]]) -> tuple[str, ...]:
-    return tuple(name for name, ends in zip(FREEDOMS, limits, strict=True) if None in ends)
+def turns_freely(not_limited: tuple[str, ...]) -> bool:
+    """Whether no turn has a limit, so that starts are turned in any way."""
+    return set(FREEDOMS[N_LENGTHS:]) <= set(not_limited)
 
 
 class _Drops:
     """Starts, and where they ended."""
 
-    def __init__(self, scene: Scene, lows: FloatArray, highs: FloatArray) -> None:
-        self._scene, self._lows, self._highs = scene, lows, highs
+    def __init__(self, scene: Scene, lows: FloatArray, highs: FloatArray, turns_freely: bool) -> None:
+        self._scene, self._lows, self._highs, self._turns_freely = scene, lows, highs, turns_freely
+        self._work = work_of(scene, scene.loads[0], scene.object.pose_world_object)
         self._has_friction = greatest_friction(scene, chosen_method(scene, None).friction(scene)) > 0.0
         self._random = np.random.default_rng(SEED)
         self._starts, self._ends = list[FloatArray](), list[FloatArray]()
@@ -185,6 +197,9 @@ class _Drops:
         sides = np.where(self._random.random((n, len(FREEDOMS))) < 0.5, self._lows, self._highs)
         values = shares * sides
         poses = [self._pose(row) for row in values]
+        if self._turns_freely:
+            turns = self._random.normal(size=(n, 4))
+            poses = [Pose(pose.position_m, turn) for pose, turn in zip(poses, turns, strict=True)]
         ended = run_many(
             self._scene,
             Variation(
@@ -219,6 +234,8 @@ class _Drops:
             alike = verdicts[left] == verdicts[first]
             if end.stability is not None and self._has_friction:
                 alike &= (touching[left] == touching[first]).all(axis=1)
+            elif end.stability is not None and end.rolls:
+                alike[alike] = [self._is_rolled(self._end(row), end) for row in left[alike].tolist()]
             elif end.stability is not None:
                 determined = [name not in end.undetermined for name in FREEDOMS]
                 apart = np.abs(values[left] - values[first])
@@ -231,7 +248,7 @@ class _Drops:
         ends_in = np.zeros(n, dtype=np.int64)
         for number, (_, rows) in enumerate(found):
             ends_in[rows] = number
-        rests = tuple(CageRest(*end, len(rows), *wilson(len(rows), n)) for end, rows in found)
+        rests = tuple(end.rest(len(rows), n) for end, rows in found)
         starts = np.array(self._starts[:n])
         return CageRests(
             phase,
@@ -248,10 +265,23 @@ class _Drops:
         """Follow one start again, and tell how it ends."""
         start = Pose(self._starts[row][:3], self._starts[row][3:])
         ended = run(self._scene.but_for(object=self._scene.object.starting_at(start))).phases[0]
-        is_at_rest = ended.verdict in AT_REST
-        touching = tuple(dict.fromkeys(contact.point for contact in ended.contacts)) if is_at_rest else ()
-        stability, undetermined = (ended.proof.stability, ended.proof.undetermined) if is_at_rest else (None, ())
-        return _End(ended.verdict, stability, ended.pose, touching, undetermined)
+        if ended.verdict not in AT_REST:
+            return _End(ended.verdict, None, ended.pose, (), (), frozenset())
+        touching = tuple(dict.fromkeys(contact.point for contact in ended.contacts))
+        forces = [(contact.point, contact.box, contact.force_normal_n or 0.0) for contact in ended.contacts]
+        least_n = BEARS * max(force_n for *_, force_n in forces)
+        bearing = frozenset((point, part) for point, part, force_n in forces if force_n > least_n)
+        proof = ended.proof
+        return _End(ended.verdict, proof.stability, ended.pose, touching, proof.undetermined, bearing)
+
+    def _is_rolled(self, end: _End, first: _End) -> bool:
+        """Whether one end has the load on the same parts as another, at the same height."""
+        if end.bearing != first.bearing or end.stability is None:
+            return False
+        if self._work is None:
+            return True
+        rise = self._work.potential(end.pose) - self._work.potential(first.pose)
+        return abs(rise) <= SAME_HEIGHT * self._work.size_n * self._scene.size_m
 
     def _values(self, ends: FloatArray) -> FloatArray:
         """Return displacements and angles from the start in the cage's axes, (n, 6), of poses (n, 7) in the world."""
@@ -263,8 +293,22 @@ class _Drops:
 
 
 class _End(NamedTuple):
+    """How one start ends; ``bearing``: the parts of the cage and the object between which forces are."""
+
     verdict: str
     stability: str | None
     pose: Pose
     touching: tuple[str, ...]
     undetermined: tuple[str, ...]
+    bearing: frozenset[tuple[str, str]]
+
+    @property
+    def rolls(self) -> bool:
+        """Whether the object can turn on otherwise than about the cage's z axis through anywhere: then neither its
+        position nor its angles tell ends apart.
+        """
+        left = set(self.undetermined)
+        return not left <= PLANE_FREEDOMS or ("yaw" in left and not {"x", "y"} <= left)
+
+    def rest(self, n_here: int, n: int) -> CageRest:
+        return CageRest(*self[:5], n_here, *wilson(n_here, n))

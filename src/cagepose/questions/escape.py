@@ -11,14 +11,15 @@ import numpy as np
 from cagepose.kernels.algebra.pose import moved_pose
 from cagepose.kernels.algebra.vector import vector_from
 from cagepose.kernels.play.escape import LENGTH_OF_WAY_OUT
-from cagepose.model.checks import FloatArray, expect, expect_count
+from cagepose.model.checks import expect, expect_count
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.questions.ends import moved_before, phase_asked
 from cagepose.questions.plane_escape import ENDLESS, N_POSES, least_work_in_plane
 from cagepose.questions.unanswered import Unanswered
+from cagepose.questions.work import Work, work_of
 from cagepose.runs.load_scaling import scaled_load
-from cagepose.runs.run import AT_REST, Motion, Run
+from cagepose.runs.run import AT_REST, Run
 from cagepose.studies.cage_verdict import PathStep, step_to
 from cagepose.studies.free_motions import FreeMotions
 from cagepose.studies.plane_frame import has_endless_holes
@@ -114,20 +115,20 @@ def escape_energy(
     ended, scene, load = run.phases[number], run.scene, run.scene.loads[number]
     if ended.verdict not in AT_REST:
         return Unanswered(f"nothing is at rest at the end of {ended.name}: it ends as {ended.verdict!r}")
-    if load.moments or load.springs or load.drive or load.press or not all(push.has_potential for push in load.pushes):
+    work = work_of(scene, load, ended.pose)
+    if work is None:
         return Unanswered(f"{load.name} is more than weight and forces that keep their direction, so it has no energy")
     if moved := moved_before(scene, number):
         return moved
     weighed = scaled_load(scene, load)
     if play(scene, search_s=0.0).verdict == "caged":
         return EscapeEnergy(load.name, math.inf, math.inf, weighed.in_newtons, (), None, 0, 0)
-    points = np.array([scene.object.center_of_gravity_m, *(push.at_object(ended.pose) for push in load.pushes)])
-    forces, rested = np.array([weighed.gravity, *weighed.forces]).reshape(-1, 3), scene.object.starting_at(ended.pose)
+    rested = scene.object.starting_at(ended.pose)
     if scene.planar is not None:
         if has_endless_holes(scene):
             return Unanswered(ENDLESS)
         n_poses = N_POSES if n_motions is None else n_motions
-        found = least_work_in_plane(scene.but_for(object=rested), forces, points, n_poses, progress)
+        found = least_work_in_plane(scene.but_for(object=rested), work.forces, work.points, n_poses, progress)
         return EscapeEnergy(
             load.name,
             found.at_least_j,
@@ -143,43 +144,11 @@ def escape_energy(
         return Unanswered(
             "a way out is searched for boxes among points alone, and no proof was found that there is none"
         )
-    search = _Search(scene.but_for(object=rested), _Work(forces, points))
+    search = _Search(scene.but_for(object=rested), work)
     search.go_on(N_MOTIONS if n_motions is None else n_motions, progress)
     return EscapeEnergy(
         load.name, 0.0, search.least_j, weighed.in_newtons, search.path, search.top, search.n_ways, search.n_tried
     )
-
-
-@dataclass(frozen=True)
-class _Work:
-    """Forces (n, 3) in the world, newtons, at points (n, 3) of the object, metres."""
-
-    forces: FloatArray
-    points: FloatArray
-
-    def potential(self, pose: Pose) -> float:
-        return -float((self.forces * pose.transform(self.points)).sum())
-
-    def highest(self, before: Pose, motion: Motion) -> tuple[float, float]:
-        """Return the greatest potential during a motion from a pose, and the share of the motion at which it is."""
-        places = before.transform(self.points)
-        here = -float((self.forces * places).sum())
-        if motion.direction_world is not None:
-            rise = -motion.distance_m * float(self.forces.sum(axis=0) @ motion.direction_world)
-            return (here + rise, 1.0) if rise > 0.0 else (here, 0.0)
-        assert motion.axis_world is not None
-        assert motion.through_world is not None
-        # Of a turn by an angle a, the potential is here + even (1 - cos a) - odd sin a.
-        arms = places - motion.through_world
-        across = np.cross(motion.axis_world, arms)
-        odd = float((self.forces * across).sum())
-        even = -float((self.forces * np.cross(motion.axis_world, across)).sum())
-        angles = [0.0, motion.angle_rad]
-        extreme = math.atan2(odd, even) % math.pi
-        angles += [angle for angle in (extreme, extreme + math.pi) if angle < motion.angle_rad]
-        values = [here + even * (1.0 - math.cos(angle)) - odd * math.sin(angle) for angle in angles]
-        best = int(np.argmax(values))
-        return values[best], angles[best] / motion.angle_rad
 
 
 class _Search:
@@ -195,14 +164,14 @@ class _Search:
         Ways out, and motions that were tried.
     """
 
-    def __init__(self, scene: Scene, work: _Work) -> None:
+    def __init__(self, scene: Scene, work: Work) -> None:
         self._frame, self._work = PlayFrame(scene), work
         self._tree = FreeMotions(scene, self._frame, MOST_STATIONS, MOTIONS_OF_BATCH)
         self._stations = self._tree.stations
         start = scene.object.pose_world_object
         self._poses, self._tops = [start], [start]
         self._peaks = [work.potential(start)]
-        self._level = float(np.linalg.norm(work.forces, axis=1).sum()) * LEVEL
+        self._level = work.size_n * LEVEL
         self._force = work.forces.sum(axis=0)
         self.least_j, self.path = math.inf, tuple[PathStep, ...]()
         self.top: Pose | None = None

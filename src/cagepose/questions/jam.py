@@ -37,7 +37,7 @@ class Jam:
         The coefficient of the scene, and whether some have coefficients of their own.
     friction
         The least with which it can jam, however hard it is driven or pushed, to 1e-5 of itself; infinite: none up to
-        10. Below it, it does not at any place that was asked.
+        10. Below it, it does not at any place that was asked. Zero: with any friction above it, as without play.
     pose_world_object
         Where the object is then; None: nowhere.
     share
@@ -93,8 +93,7 @@ def jam(run: Run, phase: str | None = None) -> Jam | Unanswered:
         poses = [Pose.from_unit(*place) for place in zip(curve.position_m, curve.quaternion_wxyz, strict=True)]
         least, stopped = jam_friction_along(run, number), np.zeros(len(poses), bool)
     else:
-        poses, least = push_jam_friction(run, number)
-        stopped = least == 0.0
+        poses, least, stopped = push_jam_friction(run, number)
     is_open = np.isnan(least)
     if is_open.all():
         return Unanswered("at no place of the way could it be asked: too much touches, or the forces cancel each other")

@@ -17,6 +17,7 @@ from cagepose.model.parts import Object
 from cagepose.model.pose import Pose, turn_from_z
 from cagepose.model.scene import Scene
 from cagepose.questions.contact_area import ContactArea, contact_area
+from cagepose.questions.drains import Pass
 from cagepose.questions.outer_points import N_AROUND, is_round, lowest_points, outer_points
 from cagepose.questions.rolling import Rest, Rolling, rolling
 
@@ -24,6 +25,8 @@ SAME_HEIGHT = 1e-9
 """Of the part's size. Heights that differ by no more are the same."""
 SAME_DOWN, SAME_SIDE = math.cos(0.01), math.cos(0.15)
 """Two downs with a greater cosine are one, or beside each other."""
+APART = math.cos(1e-3)
+"""Two downs with a lesser cosine are two."""
 LOW = 1e-3
 """Of the part's size. Points this much above the lowest one may be next to touch."""
 LEVEL = 1e-12
@@ -127,14 +130,17 @@ def resting_poses(part: Object) -> RestingPoses:
     expect(part, Object, "part")
     outside = _Outside(part)
     rolled = outside.rolled()
-    rises = np.full(len(rolled.rests), math.inf)
     found = [outside.lowest(rest) for rest in rolled.rests]
+    rows = outside.rows(found, rolled.passes)
+    number_of = {rest: number for number, row in enumerate(rows) for rest in row.rests}
+    rises = [math.inf] * len(rows)
     for top in rolled.passes:
-        for rest in top.between:
-            rises[rest] = min(rises[rest], top.height_m - found[rest].height_m)
+        one, other = (number_of[rest] for rest in top.between)
+        for number in (one, other) if one != other else ():
+            rises[number] = min(rises[number], top.height_m - rows[number].at.height_m)
     poses = [
-        outside.pose(at, rest, max(float(rise), 0.0))
-        for at, rest, rise in zip(found, rolled.rests, rises.tolist(), strict=True)
+        outside.pose(row.at, sum(rolled.rests[rest].area for rest in row.rests), max(rise, 0.0))
+        for row, rise in zip(rows, rises, strict=True)
     ]
     return RestingPoses(tuple(sorted(poses, key=lambda pose: -pose.probability)), not outside.is_round)
 
@@ -146,6 +152,13 @@ class _Lowest(NamedTuple):
     height_m: float
     rolls: str = "no"
     axis: FloatArray | None = None
+
+
+class _Row(NamedTuple):
+    """Rests (their numbers) that roll into each other without effort, and where one of them is."""
+
+    at: _Lowest
+    rests: tuple[int, ...]
 
 
 class _Outside:
@@ -188,6 +201,35 @@ class _Outside:
         # Of a row, the one that is nearest to an axis of the object's frame: its numbers are the simplest.
         simplest = self._nearer(downs[np.argmax((downs**4).sum(axis=1))])
         return simplest._replace(**self._row_from(simplest.down, downs))
+
+    def rows(self, found: list[_Lowest], passes: tuple[Pass, ...]) -> list[_Row]:
+        """Return the rests in rows: two are in one if, between them, it falls to a third of their height."""
+        height_m = SAME_HEIGHT * self._size_m
+        between: dict[int, list[_Lowest]] = {rest: [] for rest in range(len(found))}
+        same_as, asked = list(range(len(found))), set[tuple[int, int]]()
+        for top in sorted(passes, key=lambda one: one.height_m) if self.is_round else ():
+            one, other = (found[rest] for rest in top.between)
+            is_known = same_as[top.between[0]] == same_as[top.between[1]] or top.between in asked
+            asked |= {top.between, top.between[::-1]}
+            if is_known or abs(one.height_m - other.height_m) > height_m:
+                continue
+            third = self._nearer(top.down)
+            if (
+                abs(third.height_m - one.height_m) <= height_m
+                and max(third.down @ one.down, third.down @ other.down) < APART
+            ):
+                first, second = sorted(same_as[rest] for rest in top.between)
+                same_as = [first if same == second else same for same in same_as]
+                between[top.between[0]].append(third)
+        rows = []
+        for first in sorted(set(same_as)):
+            rests = tuple(rest for rest, same in enumerate(same_as) if same == first)
+            at = found[first]
+            if len(rests) > 1:
+                downs = np.array([place.down for rest in rests for place in (found[rest], *between[rest])])
+                at = at._replace(**self._row_from(at.down, downs))
+            rows.append(_Row(at, rests))
+        return rows
 
     def _row_from(self, down: FloatArray, downs: FloatArray) -> dict[str, Any]:
         """Return how a row of downs (n, 3) lies that roll into each other."""
@@ -242,7 +284,7 @@ class _Outside:
         is_low: NDArray[np.bool_] = depths >= depths.max() - LOW * self._size_m
         return is_low
 
-    def pose(self, at: _Lowest, rest: Rest, rise_m: float) -> RestingPose:
+    def pose(self, at: _Lowest, area: float, rise_m: float) -> RestingPose:
         lies_on = self._contact(at.down)
         names = [self._part.element_names[index] for index in lies_on.parts]
         return RestingPose(
@@ -252,7 +294,7 @@ class _Outside:
             at.height_m,
             lies_on.margin_m,
             rise_m,
-            rest.area / (4.0 * math.pi),
+            area / (4.0 * math.pi),
             at.rolls,
             at.axis,
         )

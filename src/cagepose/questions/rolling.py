@@ -23,6 +23,7 @@ import numpy as np
 from cagepose.kernels.algebra.vector import cross
 from cagepose.model.checks import FloatArray, as_vector, unit_rows
 from cagepose.model.hull import Hull
+from cagepose.questions.drains import Pass, Shares, drained
 
 ON_EDGE = 1e-9
 """Of the part's size. A foot so little outside of a face counts as on its edge."""
@@ -42,16 +43,6 @@ class Rest:
 
     faces: tuple[int, ...]
     area: float
-
-
-class Pass(NamedTuple):
-    """An edge over which the part tips from one rest to another one (their numbers), where down points at the top of
-    the way, and how high the centre of gravity stands then.
-    """
-
-    between: tuple[int, int]
-    down: FloatArray
-    height_m: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,14 +124,26 @@ class _Roller:
         at_end = _ends(following)
         self._join(at_end)
         ends = [self._same(face) for face in at_end]
-        numbers = {face: number for number, face in enumerate(sorted(set(ends)))}
-        totals = np.bincount(ends, self._areas(), len(ends))
-        alike = [tuple(face for face in np.flatnonzero(is_stable).tolist() if ends[face] == first) for first in numbers]
-        between = [(numbers[ends[top.between[0]]], numbers[ends[top.between[1]]], top) for top in self._tops]
+        shares, passes = self._drained(ends)
+        rests = sorted({face for end in set(ends) for face in shares.get(end, {end: 1.0})})
+        numbers = {face: number for number, face in enumerate(rests)}
+        totals = np.zeros(len(rests))
+        for end, area in zip(ends, self._areas().tolist(), strict=True):
+            for face, share in shares.get(end, {end: 1.0}).items():
+                totals[numbers[face]] += share * area
+        alike = [tuple(face for face in np.flatnonzero(is_stable).tolist() if ends[face] == rest) for rest in rests]
         return Rolling(
-            tuple(Rest(faces, float(totals[first])) for first, faces in zip(numbers, alike, strict=True)),
-            tuple(top._replace(between=(one, other)) for one, other, top in between if one != other),
+            tuple(Rest(faces, area) for faces, area in zip(alike, totals.tolist(), strict=True)),
+            tuple(top._replace(between=(numbers[top.between[0]], numbers[top.between[1]])) for top in passes),
         )
+
+    def _drained(self, ends: Sequence[int]) -> tuple[Shares, list[Pass]]:
+        """Return which faces those where faces end lead to in turn, and the ways to tip between these."""
+        between = [top._replace(between=(ends[top.between[0]], ends[top.between[1]])) for top in self._tops]
+        tops = [top for top in between if top.between[0] != top.between[1]]
+        if self._heights_of is None:
+            return {}, tops
+        return drained(self._normals, tops, self._heights_of, ON_EDGE * self._size_m)
 
     def _areas(self) -> FloatArray:
         """Return the areas that lead to each face first, (n_faces,): of triangles between a corner and its arcs, below
@@ -161,22 +164,20 @@ class _Roller:
         return areas
 
     def _join(self, ends: Sequence[int | None]) -> None:
-        """Make those rests one that have no higher place between them. Where faces end may not be known of all yet."""
+        """Make those rests one that are level with all between them. Where faces end may not be known of all yet."""
         if self._heights_of is None or not self._tops:
             return
+        level_m = ON_EDGE * self._size_m
         heights = self._heights_of(self._normals)
         tops = self._heights_of(np.array([top.down for top in self._tops])).tolist()
-        kept = []
-        for top, height_m in zip(self._tops, tops, strict=True):
+        self._tops = [top._replace(height_m=height_m) for top, height_m in zip(self._tops, tops, strict=True)]
+        for top in self._tops:
             one, other = (ends[face] for face in top.between)
-            if height_m - heights[list(top.between)].max() > ON_EDGE * self._size_m:
-                kept.append(top._replace(height_m=height_m))
-            elif one is None or other is None:
-                kept.append(top)
-            else:
+            if one is None or other is None:
+                continue
+            if abs(heights[one] - heights[other]) <= level_m and top.height_m <= heights[one] + level_m:
                 first, second = sorted((self._same(one), self._same(other)))
                 self._same_as[second] = first
-        self._tops = kept
         for arc in self._arcs.values():
             arc.leads_to[:] = [self._same(face) for face in arc.leads_to]
 
@@ -211,11 +212,11 @@ class _Roller:
         foot = self._corners[other] - way * float(self._corners[other] @ way) / float(way @ way)
         start, end = self._normals[first], self._normals[last]
         across = _cross(start, end)
-        height_m = float(np.linalg.norm(foot))
-        down = foot / height_m
+        down = foot / np.linalg.norm(foot)
         after, before = float(across @ _cross(start, down)), float(across @ _cross(down, end))
+        top = start if after <= 0.0 else end if before <= 0.0 else down
+        self._tops.append(Pass((first, last), top, float(self._corners[corner] @ top)))
         if after > 0.0 and before > 0.0:
-            self._tops.append(Pass((first, last), down, height_m))
             return _Arc([start, down, end], [first, last])
         return _Arc([start, end], [last if after <= 0.0 else first])
 

@@ -36,6 +36,10 @@ FIRST_RAYS = 8
 """Each cone starts with so many rays."""
 MOST_ROUNDS = 60
 """Rays come in so many times at most."""
+LESS_FRICTION = 0.1 * JAM_FRICTION_WITHIN
+"""Of the friction. A motion that gives way with so much less of it counts where the least friction is looked for: where
+all motions that do are long, rounding leaves none that does with all of it.
+"""
 LONG, LONGEST_MOTION = 10.0, 1e6
 """In drifts. A longer motion than the first is asked for in its own length, as rounding is of the square of it; in one
 longer than the second it is as much as a contact may open too slowly.
@@ -124,11 +128,11 @@ def least_jam_friction(question: JamQuestion, up_to: float = MOST_JAM_FRICTION) 
     It is that of contacts whose ``friction`` is one; all others have their part of it.
     """
     low, high = 0.0, up_to
-    if _gives_way(question, high):
+    if gives_way(question, high):
         return math.inf
     while high - low > max(JAM_FRICTION_WITHIN * high, LEAST_JAM_FRICTION):
         middle = 0.5 * (low + high)
-        if _gives_way(question, middle):
+        if gives_way(question, middle):
             low = middle
         else:
             high = middle
@@ -177,9 +181,10 @@ def least_of_choices(questions: Iterable[JamQuestion], greatest: float) -> float
     return least
 
 
-def _gives_way(question: JamQuestion, coefficient: float) -> bool:
+def gives_way(question: JamQuestion, coefficient: float) -> bool:
+    """Whether a motion gives way with so many times the friction of each contact, or with a little less of it."""
     asked = question._replace(friction=coefficient * question.friction)
-    return isinstance(_ask(asked, 0.0), GivesWay)
+    return isinstance(_ask(asked, 0.0, LESS_FRICTION), GivesWay)
 
 
 def _first_rays(question: JamQuestion) -> list[tuple[int, float]]:
@@ -192,9 +197,9 @@ def _first_rays(question: JamQuestion) -> list[tuple[int, float]]:
     ]
 
 
-def _ask(question: JamQuestion, margin: float) -> GivesWay | Stands | None:
-    """Return a motion that opens each contact by a margin faster than it must, or, without a margin, forces that
-    stand.
+def _ask(question: JamQuestion, margin: float, less_friction: float = 0.0) -> GivesWay | Stands | None:
+    """Return a motion that opens each contact by a margin faster than it must, or would with so much less friction (as
+    a part of it); or, without a margin, forces that stand.
     """
     columns, drifts, friction, growth, fastest = question
     sizes = np.linalg.norm(columns[:, 0], axis=1)
@@ -219,7 +224,7 @@ def _ask(question: JamQuestion, margin: float) -> GivesWay | Stands | None:
         moving = columns @ twist + drifts
         slips = np.hypot(moving[:, 1], moving[:, 2])
         beyond = (moving[:, 0] + friction * slips) / sizes + margin
-        allowed = max(0.5 * margin, 0.5 * SPEED_OF_GIVING_WAY)
+        allowed = max(0.5 * margin, 0.5 * SPEED_OF_GIVING_WAY) + less_friction * friction * slips / sizes
         wrong = np.flatnonzero(beyond > allowed)
         if not wrong.size:
             return GivesWay(twist) if np.linalg.norm(twist) <= LONGEST_MOTION else None

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cagepose.kernels.contact.loads import FIXED_FORCE, FOLLOWING_FORCE
 from cagepose.model.checks import FloatArray
@@ -22,16 +23,16 @@ from cagepose.runs.methods import chosen_method
 from cagepose.runs.run import PhaseRun, Run
 from cagepose.studies.balances import choices_of
 from cagepose.studies.contact_cones import contact_cones
-from cagepose.studies.could_jam import JamQuestion, least_of_choices
+from cagepose.studies.could_jam import JamQuestion, gives_way, least_of_choices
 
 CANCELLED = 1e-12
 """Of the sum of the forces' sizes: forces that come to less together cancel each other."""
 
 
-def push_jam_friction(run: Run, phase: int) -> tuple[list[Pose], FloatArray]:
-    """Return the poses along the way of a phase, and the least coefficient of friction with which the push could be
-    held there however great it is, (n,); 0: without friction; inf: none up to 10; nan: faces take turns at edges in
-    more ways than is asked, or the forces cancel each other.
+def push_jam_friction(run: Run, phase: int) -> tuple[list[Pose], FloatArray, NDArray[np.bool_]]:
+    """Return the poses along the way of a phase, the least coefficient of friction with which the push could be held
+    there however great it is, (n,); 0: with next to none; inf: none up to 10; nan: faces take turns at edges in more
+    ways than is asked, or the forces cancel each other; and whether it is held without friction, (n,).
 
     It is the greatest coefficient of all contacts; the others keep their proportion to it. Contacts are those that
     touch at each pose; bodies of the cage stand where the phase has left them.
@@ -44,8 +45,8 @@ def push_jam_friction(run: Run, phase: int) -> tuple[list[Pose], FloatArray]:
     scene, displaced = run.scene, displaced_after(run, phase)
     friction = chosen_method(scene, run.method).friction(scene)
     greatest, poses = greatest_friction(scene, friction), _poses(run.phases[phase])
-    found = []
-    for pose in poses:
+    found, is_stopped = [], np.zeros(len(poses), bool)
+    for place, pose in enumerate(poses):
         _, touching = judge_case(scene, cases_of(scene, friction, pose, displaced), pose, phase)
         contacts, choices = choices_of(touching)
         if choices is None:
@@ -63,13 +64,14 @@ def push_jam_friction(run: Run, phase: int) -> tuple[list[Pose], FloatArray]:
             found.append(math.nan)
             continue
         growth /= size
-        questions = (
+        questions = [
             JamQuestion(cones.columns[chosen], np.zeros((len(chosen), 3)), cones.friction[chosen], growth, 1.0)
             for chosen in map(list, choices)
             if chosen
-        )
+        ]
         found.append(least_of_choices(questions, greatest))
-    return poses, np.array(found)
+        is_stopped[place] = found[-1] == 0.0 and not all(gives_way(question, 0.0) for question in questions)
+    return poses, np.array(found), is_stopped
 
 
 def _poses(phase: PhaseRun) -> list[Pose]:

@@ -6,7 +6,7 @@ import math
 
 from cagepose.files.words import LengthWords, names_of
 from cagepose.model.wording import number_of, short
-from cagepose.questions.cage_rests import CageRest, CageRests
+from cagepose.questions.cage_rests import CageRest, CageRests, turns_freely
 
 
 def lines(answer: CageRests, words: LengthWords) -> list[tuple[str, str]]:
@@ -23,9 +23,9 @@ def lines(answer: CageRests, words: LengthWords) -> list[tuple[str, str]]:
         ("one row", f"is what ended {one}, but for what the load leaves open"),
     ]
     if answer.not_limited:
-        told.append(
-            ("no limit", f"{names_of(answer.not_limited)}: the cage sets none there, starts lie about the scene's")
-        )
+        about = "starts lie about the scene's"
+        where = f"{about}, turned in any way" if turns_freely(answer.not_limited) else about
+        told.append(("no limit", f"{names_of(answer.not_limited)}: the cage sets none there, {where}"))
     return told
 
 

@@ -7,6 +7,7 @@ import math
 from cagepose.files.words import LengthWords
 from cagepose.model.wording import number_of, short
 from cagepose.questions.jam import Jam
+from cagepose.studies.tolerances import LEAST_JAM_FRICTION
 
 
 def lines(answer: Jam, words: LengthWords) -> list[tuple[str, str]]:
@@ -17,14 +18,15 @@ def lines(answer: Jam, words: LengthWords) -> list[tuple[str, str]]:
     if math.isinf(answer.friction):
         told.append(("jam", f"at no friction up to 10{where}, however hard it is {what}"))
     else:
-        least = f"{answer.friction:.5g} on"
-        if answer.has_several and answer.present > 0.0:
+        least = f"{answer.friction:.5g} on" if answer.friction > 0.0 else "any above 0 on,"
+        if answer.has_several and answer.present > 0.0 and answer.friction > 0.0:
             least += f" (the greatest coefficient; {answer.friction / answer.present:.5g} times each)"
-        told.append(("jam", f"from {least} it can jam, however hard it is {what}; below it cannot{where}"))
+        below = f"; below it cannot{where}" if answer.friction > 0.0 else ""
+        told.append(("jam", f"from {least} it can jam, however hard it is {what}{below}"))
     if answer.pose_world_object is not None:
         share = "" if answer.share is None else f", after {short(100.0 * answer.share, 4, 1e-10)} % of the drive"
         told.append(("", f"first with the object at ({words.lengths(answer.pose_world_object.position_m)}){share}"))
-    can = "can jam" if answer.present >= answer.friction else f"cannot jam{where}"
+    can = "can jam" if answer.present >= max(answer.friction, LEAST_JAM_FRICTION) else f"cannot jam{where}"
     told.append(("here", f"with {short(answer.present, 6, 1e-12)} it {can}"))
     asked = f"at {number_of(answer.n_asked, 'place')} of the way"
     stopped = f"; at {answer.n_stopped} of them contacts stop it without friction" if answer.n_stopped else ""
