@@ -28,7 +28,6 @@ SINGLE = 1e-6
 AT_EVENTS, ON_MOTIONS = 1e-11, 1e-4
 """Of the size: how deep points may be in the other body, and between events, where a contact strays by the square of
 the way until it is put back."""
-STALLED = ("ring on a taper 2",)
 TIMES_TOLD = 2.0
 """Of what both bodies are told to be off: how far an end may be from the truth."""
 
@@ -111,15 +110,7 @@ def test_facets_that_stand_for_surfaces_end_where_primitives_do(name, tmp_path):
 
 
 @pytest.mark.usefixtures("in_this_process")
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(
-            name, marks=pytest.mark.xfail(name in STALLED, reason="primitives: a tilted ring on a cone", strict=True)
-        )
-        for name in (*cases_of(machined_parts), *cases_of(machined_truths))
-    ],
-)
+@pytest.mark.parametrize("name", [*cases_of(machined_parts), *cases_of(machined_truths)])
 def test_stl_ends_within_what_it_is_told_to_be_off(name, tmp_path):
     """What the loads decide first: chords of circles leave the rest open by as much as they are wide."""
     case, reader = case_of(name), Reader(tmp_path, "stl")
