@@ -24,6 +24,10 @@ from cagepose.model.shapes import Capsule, Cylinder, Sphere
 from cagepose.questions.cage_rests import CageRests, cage_rests
 from cagepose.questions.resting import is_on_floor_alone, resting_poses
 from cagepose.questions.unanswered import Unanswered
+from cagepose.runs.many import Runs, run_many
+from cagepose.runs.run import Run
+from cagepose.runs.solve import run
+from cagepose.runs.variation import Variation
 from cagepose.studies.likelihood import wilson
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
@@ -101,6 +105,26 @@ def test_a_shaft_that_may_roll_is_one_row_wherever_it_stops() -> None:
     assert heights[0] == pytest.approx(0.006, abs=1e-9)
     assert min(abs(height - 0.006) for height in heights[1:]) > 1e-3
     assert found.rests[0].n > 45
+
+
+def test_a_start_that_is_followed_again_is_the_same_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else a run that hangs on it, as of a thin disc in a V-groove, ends otherwise, and its row takes in others."""
+    asked, followed = set[tuple[float, ...]](), list[tuple[float, ...]]()
+
+    def many(scene: Scene, variation: Variation) -> Runs:
+        assert variation.object_euler_zyx is not None
+        asked.update(tuple(Pose(euler_zyx=row).quaternion_wxyz.tolist()) for row in variation.object_euler_zyx)
+        return run_many(scene, variation)
+
+    def one(scene: Scene) -> Run:
+        followed.append(tuple(scene.object.pose_world_object.quaternion_wxyz.tolist()))
+        return run(scene)
+
+    monkeypatch.setattr("cagepose.questions.cage_rests.run_many", many)
+    monkeypatch.setattr("cagepose.questions.cage_rests.run", one)
+    rests_of(in_a_tray(Object(shapes=[Cylinder(0.006, 0.02)])), n_starts=20)
+    assert set(followed) <= asked
+    assert len(followed) > 10
 
 
 @pytest.mark.parametrize("aside", [0.0, 0.003])

@@ -183,7 +183,7 @@ class _Drops:
         self._work = work_of(scene, scene.loads[0], scene.object.pose_world_object)
         self._has_friction = greatest_friction(scene, chosen_method(scene, None).friction(scene)) > 0.0
         self._random = np.random.default_rng(SEED)
-        self._starts, self._ends = list[FloatArray](), list[FloatArray]()
+        self._starts, self._ends = list[Pose](), list[FloatArray]()
         self._verdicts, self._touching = list[str](), list[NDArray[np.bool_]]()
         self.n_proposed = 0
 
@@ -200,17 +200,20 @@ class _Drops:
         if self._turns_freely:
             turns = self._random.normal(size=(n, 4))
             poses = [Pose(pose.position_m, turn) for pose, turn in zip(poses, turns, strict=True)]
+        # As the batch makes them, so that a start that is followed again ends there again, bit for bit.
+        angles = [pose.euler_zyx for pose in poses]
+        poses = [Pose(pose.position_m, euler_zyx=turned) for pose, turned in zip(poses, angles, strict=True)]
         ended = run_many(
             self._scene,
             Variation(
                 object_position_m=np.array([pose.position_m for pose in poses]),
-                object_euler_zyx=np.array([pose.euler_zyx for pose in poses]),
+                object_euler_zyx=np.array(angles),
             ),
         )
         self.n_proposed += n
         is_free = ended.verdict != "invalid"
         for row in np.flatnonzero(is_free).tolist():
-            self._starts.append(np.concatenate([poses[row].position_m, poses[row].quaternion_wxyz]))
+            self._starts.append(poses[row])
             self._ends.append(np.concatenate([ended.position_m[row, 0], ended.quaternion_wxyz[row, 0]]))
             self._verdicts.append(str(ended.verdict[row]))
             self._touching.append(ended.touching[row, 0])
@@ -249,12 +252,12 @@ class _Drops:
         for number, (_, rows) in enumerate(found):
             ends_in[rows] = number
         rests = tuple(end.rest(len(rows), n) for end, rows in found)
-        starts = np.array(self._starts[:n])
+        starts = self._starts[:n]
         return CageRests(
             phase,
             rests,
-            starts[:, :3],
-            starts[:, 3:],
+            np.array([start.position_m for start in starts]),
+            np.array([start.quaternion_wxyz for start in starts]),
             tuple(ends_in.tolist()),
             self.n_proposed,
             self._has_friction,
@@ -263,8 +266,7 @@ class _Drops:
 
     def _end(self, row: int) -> _End:
         """Follow one start again, and tell how it ends."""
-        start = Pose(self._starts[row][:3], self._starts[row][3:])
-        ended = run(self._scene.but_for(object=self._scene.object.starting_at(start))).phases[0]
+        ended = run(self._scene.but_for(object=self._scene.object.starting_at(self._starts[row]))).phases[0]
         if ended.verdict not in AT_REST:
             return _End(ended.verdict, None, ended.pose, (), (), frozenset())
         touching = tuple(dict.fromkeys(contact.point for contact in ended.contacts))
