@@ -16,11 +16,13 @@ from cagepose.errors import SceneError
 from cagepose.files.scene_file import load_scene
 from cagepose.model.box import Box
 from cagepose.model.cage import Cage
+from cagepose.model.facets import Facets
 from cagepose.model.load import Load
 from cagepose.model.parts import Object
 from cagepose.model.pose import Pose
 from cagepose.model.scene import Scene
 from cagepose.model.shapes import Capsule, Cylinder, Sphere
+from cagepose.model.spring import Spring
 from cagepose.questions.cage_rests import CageRests, cage_rests
 from cagepose.questions.resting import is_on_floor_alone, resting_poses
 from cagepose.questions.unanswered import Unanswered
@@ -195,3 +197,47 @@ def test_the_command_prints_a_row_for_each_rest_and_the_document_has_the_same(
     document = json.loads(capsys.readouterr().out)
     assert (len(document["ends_in"]), document["phase"]) == (20, "weight")
     assert [(rest["n"], rest["verdict"]) for rest in document["rests"]] == [(20, "rests")]
+
+
+def tray_of_two_grooves() -> Facets:
+    """One body, 60 mm by 100 mm, with two equal grooves along y, 15 mm to the left and to the right."""
+    xs, tops, half = (-0.03, -0.015, 0.0, 0.015, 0.03), (0.01, -0.005, 0.01, -0.005, 0.01), 0.05
+    vertices = [(x, y, z) for x, top in zip(xs, tops, strict=True) for y in (-half, half) for z in (-0.02, top)]
+
+    def corner(column: int, back: int, upper: int) -> int:
+        return 4 * column + 2 * back + upper
+
+    sides = []
+    for i in range(4):
+        for face in (
+            [(i, 0, 1), (i + 1, 0, 1), (i + 1, 1, 1), (i, 1, 1)],
+            [(i, 0, 0), (i, 1, 0), (i + 1, 1, 0), (i + 1, 0, 0)],
+            [(i, 0, 0), (i + 1, 0, 0), (i + 1, 0, 1), (i, 0, 1)],
+            [(i, 1, 0), (i, 1, 1), (i + 1, 1, 1), (i + 1, 1, 0)],
+        ):
+            sides.append([corner(*at) for at in face])
+    sides.append([corner(0, *at) for at in ((0, 0), (0, 1), (1, 1), (1, 0))])
+    sides.append([corner(4, *at) for at in ((0, 0), (1, 0), (1, 1), (0, 1))])
+    triangles = [(a, b, c) for a, b, c, _ in sides] + [(a, c, d) for a, _, c, d in sides]
+    return Facets(vertices, triangles, name="tray")
+
+
+def test_a_ball_in_either_of_two_equal_grooves_of_one_body_is_two_rows() -> None:
+    """They bear it alike and are as high, but its middle is elsewhere."""
+    ends = [Box((0.004, 0.1, 0.08), Pose((side * 0.032, 0, 0.02)), f"end {side}") for side in (-1, 1)]
+    walls = [Box((0.06, 0.01, 0.08), Pose((0, side * 0.02, 0.05)), f"wall {side}") for side in (-1, 1)]
+    ball = Object(shapes=[Sphere(0.008)], pose=Pose((0.001, 0, 0.03)))
+    scene = Scene(ball, Cage(shapes=[tray_of_two_grooves(), *ends, *walls]), [Load("weight", gravity=(0, 0, -1))])
+    found = cage_rests(scene, n_starts=30)
+    assert isinstance(found, CageRests)
+    assert sorted(round(1e3 * float(rest.pose.position_m[0])) for rest in found.rests) == [-15, 15]
+    assert sum(rest.n for rest in found.rests) == 30
+
+
+def test_a_part_that_hangs_by_a_spring_rests_without_a_contact() -> None:
+    block = Object([Box((0.01, 0.01, 0.01))], mass_kg=0.1, pose=Pose((0, 0, 0.02)))
+    plates = [Box((0.1, 0.1, 0.01), Pose((0, 0, z)), name) for z, name in ((-0.03, "floor"), (0.09, "lid"))]
+    hung = Load("hung", gravity=(0, 0, -9.81), springs=[Spring((0, 0, 0.005), (0, 0, 0.06), 100.0)])
+    found = cage_rests(Scene(block, Cage(shapes=plates), [hung]), n_starts=10)
+    assert isinstance(found, CageRests)
+    assert all(rest.touching == () for rest in found.rests)

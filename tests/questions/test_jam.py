@@ -157,7 +157,7 @@ def test_a_block_without_play_jams_with_any_friction() -> None:
     assert a_run.phases[0].verdict == "may rest"
     assert (found.friction, found.n_stopped) == (0.0, 0)
     told = dict(lines(found, LengthWords("mm", a_run.scene.size_m)))
-    assert told["jam"] == "from any above 0 on, it can jam, however hard it is pushed"
+    assert told["jam"] == "with any friction it can jam, however hard it is pushed"
     assert told["here"] == "with 0.25 it can jam"
 
 

@@ -297,3 +297,11 @@ def test_the_command_refuses_a_centre_of_gravity_outside(capsys: pytest.CaptureF
     arguments = ["ask", "resting", str(SCENES / "ladder.yaml"), "--plane", "--set", "object.center_of_gravity[0]=9000"]
     assert main(arguments) == 2
     assert capsys.readouterr().err.startswith("object.center_of_gravity: does not lie within the hull")
+
+
+@pytest.mark.parametrize("radius_mm", [6.0, 14.0])
+def test_six_balls_lie_on_three_of_them_in_eight_ways(radius_mm: float) -> None:
+    """By symmetry, each as often. From one to the next the way leads over the top of a ball, far above both."""
+    balls = [Sphere(1e-3 * radius_mm, Pose(0.02 * side * np.eye(3)[axis])) for axis in range(3) for side in (-1, 1)]
+    found = resting_poses(Object(shapes=balls, center_of_gravity_m=(0, 0, 0))).poses
+    assert [pose.probability for pose in found] == pytest.approx([0.125] * 8, abs=0.004)

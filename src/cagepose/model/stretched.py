@@ -70,7 +70,7 @@ def _facets(facets: Facets, by: Stretch) -> Shape | None:
     if facets.is_round:
         return None
     corners = by.moved(facets.pose_body_shape.transform(facets.vertices_m))
-    return Facets(corners, facets.triangles, facets.flat_m * by.times, name=facets.name)
+    return Facets(corners, facets.triangles, facets.flat_m, name=facets.name)
 
 
 @stretched.register

@@ -57,7 +57,7 @@ class CageRest:
         Names of the cage's points and shapes that touch at that end.
     undetermined
         Freedoms of the cage's frame along which the load does not tell poses apart: ends that differ in them are one.
-        Where it rolls, so are ends with the load on the same parts at the same height.
+        Where it rolls, so are ends with the load on the same parts and the centre of gravity at the same place.
     n
         How many starts ended here.
     low, high
@@ -160,7 +160,7 @@ def cage_rests(
     lows = np.array([-far if low is None else max(low, -far) for (low, _), far in zip(limits, opens, strict=True)])
     highs = np.array([far if high is None else min(high, far) for (_, high), far in zip(limits, opens, strict=True)])
     not_limited = tuple(name for name, ends in zip(FREEDOMS, limits, strict=True) if None in ends)
-    drops = _Drops(alone, lows, highs, turns_freely(not_limited))
+    drops = _Drops(alone, lows, highs, any_way=turns_freely(not_limited))
     while drops.n_valid < n_starts and drops.n_proposed < MOST_PROPOSED * n_starts:
         drops.drop(n_starts)
         if progress is not None:
@@ -178,8 +178,8 @@ def turns_freely(not_limited: tuple[str, ...]) -> bool:
 class _Drops:
     """Starts, and where they ended."""
 
-    def __init__(self, scene: Scene, lows: FloatArray, highs: FloatArray, turns_freely: bool) -> None:
-        self._scene, self._lows, self._highs, self._turns_freely = scene, lows, highs, turns_freely
+    def __init__(self, scene: Scene, lows: FloatArray, highs: FloatArray, *, any_way: bool) -> None:
+        self._scene, self._lows, self._highs, self._any_way = scene, lows, highs, any_way
         self._work = work_of(scene, scene.loads[0], scene.object.pose_world_object)
         self._has_friction = greatest_friction(scene, chosen_method(scene, None).friction(scene)) > 0.0
         self._random = np.random.default_rng(SEED)
@@ -197,7 +197,7 @@ class _Drops:
         sides = np.where(self._random.random((n, len(FREEDOMS))) < 0.5, self._lows, self._highs)
         values = shares * sides
         poses = [self._pose(row) for row in values]
-        if self._turns_freely:
+        if self._any_way:
             turns = self._random.normal(size=(n, 4))
             poses = [Pose(pose.position_m, turn) for pose, turn in zip(poses, turns, strict=True)]
         # As the batch makes them, so that a start that is followed again ends there again, bit for bit.
@@ -271,14 +271,21 @@ class _Drops:
             return _End(ended.verdict, None, ended.pose, (), (), frozenset())
         touching = tuple(dict.fromkeys(contact.point for contact in ended.contacts))
         forces = [(contact.point, contact.box, contact.force_normal_n or 0.0) for contact in ended.contacts]
-        least_n = BEARS * max(force_n for *_, force_n in forces)
+        least_n = BEARS * max((force_n for *_, force_n in forces), default=0.0)
         bearing = frozenset((point, part) for point, part, force_n in forces if force_n > least_n)
         proof = ended.proof
         return _End(ended.verdict, proof.stability, ended.pose, touching, proof.undetermined, bearing)
 
     def _is_rolled(self, end: _End, first: _End) -> bool:
-        """Whether one end has the load on the same parts as another, at the same height."""
+        """Whether one end has the load on the same parts as another, at the same height, and its centre of gravity at
+        the same place, as far as the load says where that is.
+        """
         if end.bearing != first.bearing or end.stability is None:
+            return False
+        center = self._scene.object.center_of_gravity_m
+        way = self._scene.cage.pose_world_cage.rotation.T @ (end.pose.transform(center) - first.pose.transform(center))
+        is_told = [name not in first.undetermined for name in FREEDOMS[:N_LENGTHS]]
+        if (np.abs(way[is_told]) > SAME_POSE * self._scene.size_m).any():
             return False
         if self._work is None:
             return True

@@ -19,8 +19,8 @@ N_ON_WAY = 33
 
 
 class Pass(NamedTuple):
-    """An edge over which the part tips from one rest to another one (their numbers), where down points at the top of
-    the way, and how high the centre of gravity stands then.
+    """An edge over which the part goes from one rest to another one (their numbers), where down points at the highest
+    place of the way, which may be one of its ends, and how high the centre of gravity stands then.
     """
 
     between: tuple[int, int]
@@ -58,14 +58,16 @@ def drained(
     """
     faces = sorted({face for top in tops for face in top.between})
     heights = dict(zip(faces, heights_of(normals[faces]).tolist(), strict=True))
+    by_height = sorted(faces, key=heights.__getitem__)
+    rank = {face: number for number, face in enumerate(by_height)}
     lower: dict[int, list[_Lower]] = {face: [] for face in faces}
     for (one, other), top, height_m in tops:
-        high, low = (one, other) if heights[one] > heights[other] else (other, one)
+        low, high = sorted((one, other), key=rank.__getitem__)
         if height_m <= heights[high] + level_m:
             way = float(np.arccos(np.clip(normals[high] @ normals[low], -1.0, 1.0)))
             lower[high].append(_Lower(low, top, (heights[high] - heights[low]) / way))
     shares, ridges = Shares(), dict[int, tuple[FloatArray, float]]()
-    for face in sorted(faces, key=heights.__getitem__):
+    for face in by_height:
         ridges[face] = normals[face], heights[face]
         shares[face] = {face: 1.0}
         if lower[face]:
@@ -77,7 +79,7 @@ def drained(
                 shares[face] = _mixed(shares[steepest.face], shares[across.face], share)
     passes = []
     for (one, other), top, height_m in tops:
-        high = one if heights[one] > heights[other] else other
+        high = max(one, other, key=rank.__getitem__)
         at, top_m = (top, height_m) if height_m > heights[high] + level_m else ridges[high]
         passes += [Pass((first, last), at, top_m) for first in shares[one] for last in shares[other] if first != last]
     return shares, passes

@@ -203,7 +203,9 @@ class _Outside:
         return simplest._replace(**self._row_from(simplest.down, downs))
 
     def rows(self, found: list[_Lowest], passes: tuple[Pass, ...]) -> list[_Row]:
-        """Return the rests in rows: two are in one if, between them, it falls to a third of their height."""
+        """Return the rests in rows: two are in one if, between them, it falls to a third of their height
+        from hardly more.
+        """
         height_m = SAME_HEIGHT * self._size_m
         between: dict[int, list[_Lowest]] = {rest: [] for rest in range(len(found))}
         same_as, asked = list(range(len(found))), set[tuple[int, int]]()
@@ -211,7 +213,8 @@ class _Outside:
             one, other = (found[rest] for rest in top.between)
             is_known = same_as[top.between[0]] == same_as[top.between[1]] or top.between in asked
             asked |= {top.between, top.between[::-1]}
-            if is_known or abs(one.height_m - other.height_m) > height_m:
+            is_high = top.height_m - one.height_m > LOW * self._size_m
+            if is_known or is_high or abs(one.height_m - other.height_m) > height_m:
                 continue
             third = self._nearer(top.down)
             if (

@@ -24,8 +24,9 @@ MOST = 100.0
 
 def thickened(scene: Scene) -> Scene:
     """Return a scene that moves in a plane stretched across it, from the level of the object's pose: at the same poses
-    the object is in the cage, and what both share is as thick as the object is wide. The same scene, where that needs
-    no stretch, or something in it would be no shape of ours, as a ball.
+    the object is in the cage, and what both share is as thick as the object is wide, but for what is more than `MOST`
+    times as thin. The same scene, where that needs no stretch, something in it would be no shape of ours, as a ball, or
+    the cage has bodies.
     """
     assert scene.planar is not None
     held, cage = scene.object, scene.cage
@@ -42,10 +43,10 @@ def thickened(scene: Scene) -> Scene:
         if parts is None or shapes is None or holes is None or cage_holes is None:
             return scene
         points, center = in_cage.moved(cage.points_cage), held.center_of_gravity_m
-        thick = Object(center_of_gravity_m=center, shapes=parts, holes=holes, pose=held.pose_world_object)
+        thick = Object((), center, shapes=parts, holes=holes, pose=held.pose_world_object, mass_kg=held.mass_kg)
         around = Cage(points, cage.names, cage.pose_world_cage, shapes=shapes, holes=cage_holes)
         return scene.but_for(object=thick, cage=around)
-    except SceneError:  # it is nearly none already
+    except SceneError:  # its touch tolerance is greater: points, or sides of a part, may be too near to each other
         return scene
 
 

@@ -18,11 +18,11 @@ def lines(answer: Jam, words: LengthWords) -> list[tuple[str, str]]:
     if math.isinf(answer.friction):
         told.append(("jam", f"at no friction up to 10{where}, however hard it is {what}"))
     else:
-        least = f"{answer.friction:.5g} on" if answer.friction > 0.0 else "any above 0 on,"
+        least = f"from {answer.friction:.5g} on" if answer.friction > 0.0 else "with any friction"
         if answer.has_several and answer.present > 0.0 and answer.friction > 0.0:
             least += f" (the greatest coefficient; {answer.friction / answer.present:.5g} times each)"
         below = f"; below it cannot{where}" if answer.friction > 0.0 else ""
-        told.append(("jam", f"from {least} it can jam, however hard it is {what}{below}"))
+        told.append(("jam", f"{least} it can jam, however hard it is {what}{below}"))
     if answer.pose_world_object is not None:
         share = "" if answer.share is None else f", after {short(100.0 * answer.share, 4, 1e-10)} % of the drive"
         told.append(("", f"first with the object at ({words.lengths(answer.pose_world_object.position_m)}){share}"))
