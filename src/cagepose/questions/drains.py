@@ -52,7 +52,7 @@ def drained(
     tops
         Of the ways between faces on which the hull rests, no two of which are level with all between them.
     heights_of
-        How high the centre of gravity stands while units vectors (n, 3) point down, (n,), metres.
+        How high the centre of gravity stands while unit vectors (n, 3) point down, (n,), metres.
     level_m
         Heights that differ by no more are the same.
     """
